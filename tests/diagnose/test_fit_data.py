@@ -153,8 +153,9 @@ def test_the_cause_is_named_and_reported(decays, monkeypatch):
         TestRecord(name, name, None, None, 0.0, TIME, None, None, kind="decay") for name in decays.names
     )
     measurement = Measurement(Path(), "decays", decays.model, decays.law, {}, tests, False, {})
-    found = diagnosis.diagnose(measurement, CANDIDATES)
+    found = diagnosis.diagnose(measurement, (*CANDIDATES, "empirical_force"))
     assert found.unfinished == {}
+    assert found.empirical is None  # decays record no motion
     (cause,), tested = found.finding.cause.effects, {each.effect: each for each in found.scores}
     assert (found.finding.verdict, cause) == ("named", "viscous_damping")
     fit = found.finding.cause.fit

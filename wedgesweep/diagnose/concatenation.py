@@ -22,7 +22,7 @@ from wedgesweep.diagnose.evaluation import (
     Scenario,
     WarmStart,
 )
-from wedgesweep.diagnose.fit_data import FitData
+from wedgesweep.diagnose.fit_data import FitData, Motion
 from wedgesweep.diagnose.model import Fit, Model
 from wedgesweep.natural_units import NaturalUnits
 
@@ -349,6 +349,14 @@ class Concatenation(FitData):
     def rows(self, base: Fit, extended: Fit) -> list[dict[str, Any]]:
         own = zip(self.parts, self.fits(base), self.fits(extended), strict=True)
         return [{"kind": part.kind, **row} for part, *fits in own for row in part.rows(*fits)]
+
+    def motion(self, fit: Fit) -> Motion | None:
+        found = self._each("motion", each=self.fits(fit))
+        return None if None in found else Motion.joined(found)
+
+    @property
+    def recorded_forces(self) -> tuple[np.ndarray, ...]:
+        return tuple(force for part in self.parts for force in part.recorded_forces)
 
 
 def joined(parts: Sequence[Any]) -> FitData:

@@ -47,6 +47,18 @@ class Arrays(NamedTuple):
     coordinates: Mapping[str, Any]
 
 
+class Motion(NamedTuple):
+    """Samples (n,) of displacement (m) and velocity (m/s)."""
+
+    displacement: np.ndarray
+    velocity: np.ndarray
+
+    @classmethod
+    def joined(cls, parts: "Iterable[Motion]") -> "Motion":
+        """All samples of several motions."""
+        return cls(*(np.concatenate(each) for each in zip(*parts, strict=True)))
+
+
 class FitData(Protocol):
     """T measured tests of one ``kind`` of record, or of several.
 
@@ -279,6 +291,15 @@ class FitData(Protocol):
     def cases(self, fit: "Fit") -> list[dict[str, float]]:
         """Frequency (``frequency_hz``) and input amplitude of each test as fitted, to run in a sweep."""
         return []
+
+    def motion(self, fit: "Fit") -> Motion | None:
+        """The measured motion of all tests as sensors show it; None where it was not recorded."""
+        return None
+
+    @property
+    def recorded_forces(self) -> tuple[np.ndarray, ...]:
+        """Forces (N) that were recorded, (n,) each."""
+        return ()
 
     @property
     def offers(self) -> tuple[str, ...]:

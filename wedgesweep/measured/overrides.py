@@ -1,11 +1,10 @@
 """Numbers of the base model that differ from test to test: an empty and a loaded wagon, a heavier disc."""
 
 from collections.abc import Mapping
-from copy import deepcopy
 from dataclasses import replace
 from typing import Any
 
-from wedgesweep.config import Config, from_document
+from wedgesweep.config import Config, axes, from_document
 from wedgesweep.effects.base import OSCILLATOR
 from wedgesweep.errors import ConfigError
 from wedgesweep.hints import hint
@@ -22,23 +21,12 @@ def with_numbers(model: Config, numbers: Mapping[str, float], source: str = "mod
     ConfigError
         If a name is unknown or a number is out of range.
     """
-    document = deepcopy(model.written)
-    unknown = []
-    for name, number in numbers.items():
-        *sections, key = name.split(".")
-        place: Any = document
-        for section in sections:
-            place = place.get(section, {}) if isinstance(place, dict) else {}
-        known = sections and sections[0] not in NOT_OF_THE_SYSTEM and isinstance(place, dict)
-        if not (known and isinstance(place.get(key), int | float)):
-            unknown.append(
-                f"{source}: {name}: the model has no such number; {hint(name, _numbers(document))}"
-            )
-        else:
-            place[key] = number
+    known = _numbers(model.written)
+    unknown = [name for name in numbers if name not in known]
     if unknown:
-        raise ConfigError(unknown)
-    changed = from_document(document, source)
+        problem = "the model has no such number"
+        raise ConfigError([f"{source}: {name}: {problem}; {hint(name, known)}" for name in unknown])
+    changed = from_document(axes.with_numbers(model.written, numbers), source)
     if model.system != OSCILLATOR:
         return changed
     return replace(changed, nominal_load=model.oscillator["normal_force"])

@@ -6,8 +6,8 @@ from functools import cached_property
 import numpy as np
 
 from wedgesweep.diagnose.empirical.hypothesis import Ranges
-from wedgesweep.diagnose.empirical.motion import Motion
 from wedgesweep.diagnose.empirical.smooth_fit import SmoothFit
+from wedgesweep.diagnose.fit_data import Motion
 from wedgesweep.effects.empirical_force import interpolation
 
 # Cells of the map over displacement and over velocity, odd so that one is at rest.

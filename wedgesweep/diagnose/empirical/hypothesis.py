@@ -6,6 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from wedgesweep.config import Config
+from wedgesweep.diagnose.fit_data import FitData, Motion
 from wedgesweep.diagnose.fit_parameters import FitParameter, Hypothesis, Values
 from wedgesweep.effects.empirical_force import FORCES, NAME, PLACES, SPEEDS, TABLE
 
@@ -24,6 +25,15 @@ class Ranges:
     velocity: float
     force: float
     centre: float = 0.0
+
+    @classmethod
+    def of(cls, data: FitData, moved: Motion) -> "Ranges":
+        """Ranges of a motion; the largest force was recorded, or is that of spring and inertia in it."""
+        lowest, highest = float(moved.displacement.min()), float(moved.displacement.max())
+        speed, place, units = float(np.abs(moved.velocity).max()), max(-lowest, highest), data.units
+        acting = units.mass * max(speed**2 / place, place / units.time**2)
+        force = max(acting, *(0.5 * float(np.ptp(each)) for each in data.recorded_forces), 0.0)
+        return cls(0.5 * (highest - lowest), speed, force, 0.5 * (highest + lowest))
 
 
 @dataclass(frozen=True)

@@ -8,19 +8,20 @@ import numpy as np
 from wedgesweep.diagnose.empirical.force_map import ForceMap
 
 Form = Callable[[np.ndarray, np.ndarray], np.ndarray]
-# Forms of known effects, and products of them, of displacement z and velocity v in units of the largest ones.
+# Forms of effects (their names in brackets), and others that are often met, of displacement z and velocity v
+# in units of the largest ones.
 FORMS: dict[str, Form] = {
     "spring (bolster_stiffness)": lambda z, v: z,
     "spring that stiffens (cubic_stiffness)": lambda z, v: z**3,
-    "spring that differs by side (asymmetric_spring)": lambda z, v: np.abs(z),
+    "spring that differs by side": lambda z, v: np.abs(z),
     "end stops or play (end_stop, backlash)": lambda z, v: np.sign(z) * np.maximum(np.abs(z) - 0.7, 0.0),
     "damper (viscous_damping)": lambda z, v: v,
     "damper that differs by direction (directional_damping)": lambda z, v: np.abs(v),
     "drag (quadratic_drag)": lambda z, v: v * np.abs(v),
-    "degressive damper (degressive_damping)": lambda z, v: np.sign(v) * np.sqrt(np.abs(v)),
+    "degressive damper": lambda z, v: np.sign(v) * np.sqrt(np.abs(v)),
     "dry friction (guide_friction, friction_level)": lambda z, v: np.sign(v),
     "friction that falls with speed (stribeck)": lambda z, v: np.sign(v) * np.exp(-np.abs(v) / 0.2),
-    "friction that differs along the stroke (position_friction)": lambda z, v: np.sign(v) * z,
+    "friction that differs along the stroke": lambda z, v: np.sign(v) * z,
     "friction that grows with travel": lambda z, v: np.sign(v) * np.abs(z),
     "damping that differs along the stroke": lambda z, v: v * z,
     "damping that grows with travel": lambda z, v: v * z**2,

@@ -15,12 +15,11 @@ from wedgesweep.diagnose.cross_validation import (
 )
 from wedgesweep.diagnose.empirical.force_map import ForceMap, force_map
 from wedgesweep.diagnose.empirical.hypothesis import EmpiricalHypothesis, Ranges
-from wedgesweep.diagnose.empirical.motion import largest_force, motion
 from wedgesweep.diagnose.empirical.named_force import at_nodes, half_step
 from wedgesweep.diagnose.empirical.nearest import Nearest, nearest
 from wedgesweep.diagnose.empirical.smooth_fit import SmoothFit, fit
 from wedgesweep.diagnose.evaluation import Evaluation
-from wedgesweep.diagnose.fit_data import FitData
+from wedgesweep.diagnose.fit_data import FitData, Motion
 from wedgesweep.diagnose.fit_parameters import Values
 from wedgesweep.diagnose.ladder import Level, Rated
 from wedgesweep.diagnose.model import Fit, Model
@@ -89,31 +88,30 @@ class EmpiricalForce:
 def empirical_force(base: Fit, levels: Sequence[Level], each: Each) -> EmpiricalForce | None:
     """The empirical force beside the base model; None where tests cannot show one.
 
-    It takes tests to leave out, a model that can have such a force, and an explanation to compare it with.
+    It takes a measured motion, tests to leave out, a model that can have such a force, and an explanation to
+    compare it with.
     """
-    data, moved = base.model.data, motion(base)
-    groups = held_out_groups(data)
+    data, groups = base.model.data, held_out_groups(base.model.data)
+    moved = data.motion(base)
     named = min((level.best for level in levels), key=_left_out)
-    if not groups or _left_out(named) == inf or NAME not in data.model.possible_effects:
+    if moved is None or not groups or _left_out(named) == inf or NAME not in data.model.possible_effects:
         return None
-    lowest, highest = float(moved.displacement.min()), float(moved.displacement.max())
-    fastest = float(np.abs(moved.velocity).max())
-    travel, centre = 0.5 * (highest - lowest), 0.5 * (highest + lowest)
-    ranges = Ranges(travel, fastest, largest_force(base, moved), centre)
-    hypothesis = EmpiricalHypothesis.of(data.model, ranges, units=data.units)
+    if data.model.system != "oscillator":  # a suspension's sensors show minus its state
+        moved = Motion(-moved.displacement, -moved.velocity)
+    hypothesis = EmpiricalHypothesis.of(data.model, Ranges.of(data, moved), units=data.units)
     rows = [tests for _, tests in groups]
     size = named.accuracy if named.accuracy < inf else 1.0
     start = _start(Model(data.with_model_error(size), hypothesis), base, named)
     if start is None:
         return None
-    found = _fitted(start, rows)
+    found = fit(*start, rows)
     own = _accuracy(found)
     for _ in range(REFITS):
         if own == 0.0 or own > SMALLER * size:
             break
         size, weighted = own, data.with_model_error(own)
         again = weighted.compared_again(found.evaluation)
-        found = min(found, _fitted((found.model.on(weighted), again), rows), key=_accuracy)
+        found = min(found, fit(found.model.on(weighted), again, rows), key=_accuracy)
         own = _accuracy(found)
     step, slope = _step(found)
     shown = force_map(found, moved, step, slope)
@@ -123,10 +121,6 @@ def empirical_force(base: Fit, levels: Sequence[Level], each: Each) -> Empirical
 
 def _left_out(rated: Rated) -> float:
     return inf if rated.held_out is None else rated.held_out
-
-
-def _fitted(start: tuple[Model, Evaluation], groups: Sequence[np.ndarray]) -> SmoothFit:
-    return fit(*start, groups)
 
 
 def _start(model: Model, base: Fit, named: Rated) -> tuple[Model, Evaluation] | None:

@@ -16,8 +16,9 @@ from wedgesweep.config import Config
 from wedgesweep.diagnose import work
 from wedgesweep.diagnose.decorrelation import Decorrelation
 from wedgesweep.diagnose.evaluation import NoStart, NuisanceParameter, Point, Scenario
-from wedgesweep.diagnose.fit_data import Arrays
+from wedgesweep.diagnose.fit_data import Arrays, Motion
 from wedgesweep.diagnose.loop.recording import Recording
+from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.next_test.sensors import Sensors, median_test
 from wedgesweep.diagnose.noise_spectrum import NoiseSpectrum
 from wedgesweep.diagnose.sampled_data import SampledData, padded
@@ -207,6 +208,14 @@ class LoopData(SampledData):
             "force_noise": (("test",), noise, "N", "noise of a compared force"),
         }
         return Arrays(variables, {})
+
+    def motion(self, fit: Fit) -> Motion:
+        moved = (self.recordings[number].motion for number in np.unique(self.numbers))
+        return Motion.joined(Motion(each.displacement, each.velocity) for each in moved)
+
+    @property
+    def recorded_forces(self) -> tuple[np.ndarray, ...]:
+        return tuple(own.force for own in self.recordings)
 
     def sensors(self) -> Sensors:
         own = median_test(

@@ -12,11 +12,11 @@ from typing import Any, NamedTuple, Self
 import numpy as np
 
 from wedgesweep.diagnose.evaluation import Comparison, Evaluation, NuisanceParameter, Point, Scenario
-from wedgesweep.diagnose.fit_data import Arrays, FitData
+from wedgesweep.diagnose.fit_data import Arrays, FitData, Motion
 from wedgesweep.diagnose.model import Fit, Model
 from wedgesweep.diagnose.next_test.sensors import Sensors
 from wedgesweep.diagnose.noise_spectrum import NoiseSpectrum
-from wedgesweep.diagnose.steady import amplitude_grid, arrays, simulation, stated_input, tone
+from wedgesweep.diagnose.steady import amplitude_grid, arrays, simulation, stated_input, tone, waveforms
 from wedgesweep.diagnose.steady.spectra import SIMULATED, Spectrum
 from wedgesweep.diagnose.steady.tone import TONE, TONE_FREQUENCY
 from wedgesweep.diagnose.steady.whitened import WhitenedHarmonics, real
@@ -386,6 +386,11 @@ class HarmonicData(WhitenedHarmonics, FitData):
 
     def arrays(self, base: Fit, extended: Fit) -> Arrays:
         return arrays.arrays(self, base, extended)
+
+    def motion(self, fit: Fit) -> Motion:
+        harmonics = waveforms.measured_from_phase_zero(self, fit)
+        both = harmonics[:, 0], waveforms.velocity(self, harmonics)
+        return Motion(*(waveforms.waveform(each).ravel() for each in both))
 
     @property
     def method(self) -> dict[str, Any]:

@@ -23,8 +23,8 @@ from wedgesweep.diagnose.evaluation import (
     Point,
     Scenario,
 )
-from wedgesweep.diagnose.fit_data import INPUT_GAIN, Arrays
-from wedgesweep.diagnose.model import TOLERANCE, Model
+from wedgesweep.diagnose.fit_data import INPUT_GAIN, Arrays, Motion
+from wedgesweep.diagnose.model import TOLERANCE, Fit, Model
 from wedgesweep.diagnose.next_test.sensors import Sensors, median_test
 from wedgesweep.diagnose.noise_spectrum import NoiseBins
 from wedgesweep.diagnose.sampled_data import SampledData, best_of_each_test, padded
@@ -307,6 +307,9 @@ class TransientData(SampledData):
 
     def shown(self, simulated: np.ndarray) -> Arrays:
         return arrays.arrays(self, simulated)
+
+    def motion(self, fit: Fit) -> Motion:
+        return Motion.joined(own.motion for own in self.windows)
 
     @property
     def offers(self) -> tuple[str, ...]:

@@ -15,6 +15,7 @@ from scipy.fft import dct, idct
 
 from wedgesweep.config import Config
 from wedgesweep.diagnose.decorrelation import Decorrelation
+from wedgesweep.diagnose.fit_data import Motion
 from wedgesweep.diagnose.fit_parameters import Values
 from wedgesweep.diagnose.noise_spectrum import FROM_SPECTRUM, NoiseBins, NoiseSpectrum
 from wedgesweep.diagnose.transient.input_noise import (
@@ -118,6 +119,21 @@ class RecordWindow:
     def rms(self) -> np.ndarray:
         """Rms (C,) of each channel about its mean."""
         return self.channels.std(axis=1)
+
+    @property
+    def motion(self) -> Motion:
+        """The motion by its lowest derivatives; what no sensor shows comes from the one beside it."""
+        by_order = dict(zip(self.orders, self.channels, strict=True))
+        velocity = by_order.get(1)
+        if velocity is None:
+            shown = by_order.get(0)
+            velocity = self._integrated(by_order[2]) if shown is None else np.gradient(shown, self.step)
+        return Motion(by_order.get(0, self._integrated(velocity)), velocity)
+
+    def _integrated(self, rate: np.ndarray) -> np.ndarray:
+        """Samples (n,) of a motion about its mean, from those of its rate about theirs."""
+        found = np.cumsum(rate - rate.mean()) * self.step
+        return np.asarray(found - found.mean())
 
     @property
     def spread(self) -> float:
