@@ -22,8 +22,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from random import Random
 
-from torture import specimens
-from torture.inputs import KINDS
+from torture import formats, specimens
+from torture.inputs import FORMATS, KINDS, SHARES
 from torture.verdicts import (
     ACCEPTED,
     FAILED,
@@ -43,41 +43,43 @@ SILENT = 300.0
 
 
 def main() -> int:
-    options = _options()
+    chosen = options()
     with tempfile.TemporaryDirectory(prefix="fuzz-") as made:
         base = Path(made)
-        if options.specimens:
-            given = pickle.loads(Path(options.specimens).read_bytes())
-            work(given, options, base)
+        if chosen.specimens:
+            given = pickle.loads(Path(chosen.specimens).read_bytes())
+            work(given, chosen, base)
             return 0
         given = _specimens(base)
-        if options.only is not None:
-            place = Path(options.keep or base / "one")
-            kind, command, verdict = one(given, options.seed, options.only, place, options.kind)
+        if chosen.only is not None:
+            place = Path(chosen.keep or base / "one")
+            kind, command, verdict = one(given, chosen, chosen.only, place)
             print(f"{kind}: {' '.join(command)}\n{verdict.outcome}\n{verdict.output}")
             return int(verdict.fault)
         (base / "specimens").write_bytes(pickle.dumps(given))
-        return campaign(options, base)
+        return campaign(chosen, base)
 
 
-def _options() -> argparse.Namespace:
+def options(words: list[str] | None = None) -> argparse.Namespace:
+    """Options of the command line, or of the given words."""
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("--inputs", type=int, default=100_000)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
-    parser.add_argument("--kind", choices=[kind.__name__ for kind in KINDS], help="inputs of this kind only")
+    kinds = parser.add_mutually_exclusive_group()
+    kinds.add_argument("--kind", choices=KINDS, help="inputs of this kind only")
+    kinds.add_argument("--formats", action="store_true", help="files of each format in turn")
     parser.add_argument("--only", type=int, metavar="NUMBER", help="one input")
     parser.add_argument("--keep", metavar="DIR", help="where --only writes the input")
     parser.add_argument("--specimens", help=argparse.SUPPRESS)
-    parser.add_argument("--first", type=int, default=0, help=argparse.SUPPRESS)
+    parser.add_argument("--first", type=int, default=0, help="number of the first input (default: 0)")
     parser.add_argument("--step", type=int, default=1, help=argparse.SUPPRESS)
-    return parser.parse_args()
+    return parser.parse_args(words)
 
 
 def _specimens(base: Path) -> specimens.Specimens:
-    sys.path.insert(0, str(Path(__file__).parents[1]))
     from tests import fixture_diagnosis
 
     (base / "made").mkdir()
@@ -87,29 +89,32 @@ def _specimens(base: Path) -> specimens.Specimens:
 
 
 def one(
-    given: specimens.Specimens, seed: int, number: int, place: Path, only: str | None = None
+    given: specimens.Specimens, options: argparse.Namespace, number: int, place: Path
 ) -> tuple[str, list[str], Verdict]:
     """Write an input to an empty directory and try it there."""
-    draw = Random(f"{seed}/{number}")
-    kinds = {kind: share for kind, share in KINDS.items() if only in (None, kind.__name__)}
-    kind = draw.choices(list(kinds), list(kinds.values()))[0]
+    draw = Random(f"{options.seed}/{number}")
+    here = [kind for kind in KINDS if kind in given.stored or kind not in formats.WRITERS]
+    kind = options.kind or draw.choices(here, [SHARES.get(each, 1.0) for each in here])[0]
+    if options.formats:
+        here = [kind for kind in here if kind in FORMATS]
+        kind = here[number % len(here)]
     shutil.rmtree(place, ignore_errors=True)
     place.mkdir(parents=True)
-    command = kind(given, place, draw)
+    command = KINDS[kind](given, place, draw)
     with contextlib.chdir(place):
-        return kind.__name__, command, judge(command)
+        return kind, command, judge(command)
 
 
 def work(given: specimens.Specimens, options: argparse.Namespace, base: Path) -> None:
     """Try every so many inputs, and write a line of Python on each to the standard output."""
     answers = os.fdopen(os.dup(1), "w", buffering=1)
-    leaked = (base / "stderr").open("w+")
+    leaked = (base / "stderr").open("a")  # so that what follows a truncation begins the file
     os.dup2(leaked.fileno(), 1)
     os.dup2(leaked.fileno(), 2)
     for number in range(options.first, options.inputs, options.step):
         print(repr(number), file=answers)
         try:
-            kind, command, verdict = one(given, options.seed, number, base / "input", options.kind)
+            kind, command, verdict = one(given, options, number, base / "input")
         except Exception:
             kind, command, verdict = "fuzz.py", [], Verdict(TRACEBACK, traceback.format_exc())
         written = (base / "stderr").read_text(errors="replace")
@@ -144,7 +149,7 @@ def campaign(options: argparse.Namespace, base: Path) -> int:
 
 def _shard(options: argparse.Namespace, base: Path, job: int) -> Iterator[tuple]:
     """Results of a worker, which is started again after an input that ends it."""
-    first = job
+    first = options.first + job
     while first < options.inputs:
         process = subprocess.Popen(_command(options, base, first), stdout=subprocess.PIPE, text=True)
         number = None
@@ -166,10 +171,13 @@ def _shard(options: argparse.Namespace, base: Path, job: int) -> Iterator[tuple]
 
 
 def _command(options: argparse.Namespace, base: Path, first: int) -> list[str]:
-    kind = ["--kind", options.kind] if options.kind else []
     numbers = {"--inputs": options.inputs, "--seed": options.seed, "--first": first, "--step": options.jobs}
     words = [str(word) for pair in numbers.items() for word in pair]
-    return [sys.executable, __file__, "--specimens", str(base / "specimens"), *words, *kind]
+    return [sys.executable, __file__, "--specimens", str(base / "specimens"), *words, *_kinds(options)]
+
+
+def _kinds(options: argparse.Namespace) -> list[str]:
+    return ["--formats"] if options.formats else ["--kind", options.kind] if options.kind else []
 
 
 def _lines(process: subprocess.Popen) -> Iterator[str]:
@@ -202,8 +210,8 @@ def report(found: list[tuple], options: argparse.Namespace) -> int:
     faults = sorted(each for each in found if each[3] in FAULTS)
     for number, kind, command, outcome, output in _first(faults):
         print(f"\n--- {outcome}: {kind}, input {number}: wedgesweep {' '.join(command)[:200]}")
-        only = f" --kind {options.kind}" if options.kind else ""
-        print(f"python scripts/fuzz.py --seed {options.seed}{only} --only {number} --keep DIR\n{output}")
+        again = ["--seed", str(options.seed), *_kinds(options), "--only", str(number), "--keep", "DIR"]
+        print(f"python scripts/fuzz.py {' '.join(again)}\n{output}")
     print(f"\n{len(faults)} faults")
     return int(bool(faults))
 

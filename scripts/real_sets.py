@@ -54,23 +54,7 @@ def main() -> None:
 
 
 def row(name: str, source: Path, place: Path, limit: str) -> str:
-    place.mkdir(parents=True, exist_ok=True)
-    command(
-        "init",
-        "--force",
-        "measured.toml",
-        "--data",
-        *(str(source / each) for each in FILES[name]),
-        place=place,
-    )
-    edits = EDITS.get(name, [])
-    for file, pattern, line in edits:
-        text, count = re.subn(pattern, line, (place / file).read_text(), count=1)
-        if not count:
-            sys.exit(f"{place / file}: no {pattern}")
-        (place / file).write_text(text)
-    if any(file == "measured.toml" for file, _, _ in edits):
-        command("init", "--force", "model.toml", "--data", "measured.toml", place=place)
+    begin(name, source, place)
     command("check", "measured.toml", place=place)
     told = command(
         "diagnose", "measured.toml", "-o", "found", "--no-report", "--time-limit", limit, place=place
@@ -80,7 +64,22 @@ def row(name: str, source: Path, place: Path, limit: str) -> str:
     sentence = next(
         (line for line in told.splitlines() if found["verdict"] in line or line.endswith(".")), ""
     )
-    return f"| {name} | {len(edits)} | `{found['verdict']}` | {best} | {sentence} |"
+    return f"| {name} | {len(EDITS.get(name, ()))} | `{found['verdict']}` | {best} | {sentence} |"
+
+
+def begin(name: str, source: Path, place: Path) -> None:
+    """Write a set's measured.toml and model: what `init` makes of the files, with lines edited."""
+    place.mkdir(parents=True, exist_ok=True)
+    files = [str(source / file) for file in FILES[name]]
+    command("init", "--force", "measured.toml", "--data", *files, place=place)
+    edits = EDITS.get(name, [])
+    for file, pattern, line in edits:
+        text, count = re.subn(pattern, line, (place / file).read_text(), count=1)
+        if not count:
+            sys.exit(f"{place / file}: no {pattern}")
+        (place / file).write_text(text)
+    if any(file == "measured.toml" for file, _, _ in edits):
+        command("init", "--force", "model.toml", "--data", "measured.toml", place=place)
 
 
 def rung(each: dict) -> str:

@@ -5,15 +5,15 @@ from random import Random
 import fuzz
 import kill_campaign
 import pytest
-from torture import inputs, kills, mutations, specimens
-from torture.verdicts import HANG, LIMIT, NOT_FINITE, REFUSED, TRACEBACK, WARNING, judge
+from torture import formats, inputs, kills, mutations, specimens
+from torture.verdicts import ACCEPTED, HANG, LIMIT, NOT_FINITE, REFUSED, TRACEBACK, WARNING, judge
 
 from tests import fixture_diagnosis
 from tests.small_sweep import CONFIG
 
 # Inputs of each kind; those that are solved or drawn take longest.
-TRIED = {"config": 8, "run": 1, "measured": 10, "model": 5, "csv": 10, "netcdf": 8, "stored": 8, "clock": 8}
-FEW = {"matlab": 3, "dataset": 4, "journal": 4, "figure": 1, "diagnosis": 1, "options": 4}
+TRIED = {"config": 8, "run": 1, "measured": 10, "model": 5, "csv": 10, "clock": 8}
+FEW = {"dataset": 4, "journal": 4, "figure": 1, "diagnosis": 1, "options": 4}
 
 
 @pytest.fixture(scope="module")
@@ -25,24 +25,44 @@ def given(tmp_path_factory):
     return specimens.make(place / "made", found)
 
 
+def outcomes(given, place, numbers, *words):
+    """How the inputs of some numbers end, none of them in a fault."""
+    found = []
+    for number in numbers:
+        kind, command, verdict = fuzz.one(given, fuzz.options(["--seed", "7", *words]), number, place)
+        assert not verdict.fault, (number, kind, command, verdict)
+        found.append(verdict.outcome)
+    return found
+
+
 @pytest.mark.parametrize("kind", TRIED | FEW)
 def test_hostile_inputs_are_refused_or_understood(given, tmp_path, kind):
-    outcomes = []
-    for number in range((TRIED | FEW)[kind]):
-        _, command, verdict = fuzz.one(given, 7, number, tmp_path / "input", kind)
-        assert not verdict.fault, (number, command, verdict)
-        outcomes.append(verdict.outcome)
-    assert REFUSED in outcomes or kind in ("figure", "diagnosis", "options", "run")
+    found = outcomes(given, tmp_path / "input", range((TRIED | FEW)[kind]), "--kind", kind)
+    assert REFUSED in found or kind in ("figure", "diagnosis", "options", "run")
+
+
+def test_hostile_files_of_every_format_are_refused_or_understood(given, tmp_path):
+    found = outcomes(given, tmp_path / "input", range(2 * len(inputs.FORMATS)), "--formats")
+    assert {REFUSED, ACCEPTED} == {*found}
+
+
+@pytest.mark.parametrize("name", formats.WRITERS)
+def test_a_format_that_is_not_spoiled_is_accepted(given, tmp_path, monkeypatch, name):
+    """Else its mutations would all be refused for a fault of the specimen."""
+    if name not in given.stored:
+        pytest.skip("the format's library is not here")
+    monkeypatch.setattr(formats, "spoil", lambda path, content, draw: path.write_bytes(content))
+    monkeypatch.chdir(tmp_path)
+    assert judge(inputs.KINDS[name](given, tmp_path, Random(7))).outcome == ACCEPTED
 
 
 def test_a_number_gives_the_same_input_again(given, tmp_path):
-    for kind in (inputs.measured, inputs.csv, inputs.netcdf):
+    for kind in ("measured", "csv", "one.npz"):
         made = []
         for name in ("one", "other"):
-            (tmp_path / name / kind.__name__).mkdir(parents=True)
-            kind(given, tmp_path / name / kind.__name__, Random("7/1"))
-            files = sorted((tmp_path / name / kind.__name__).iterdir())
-            made.append([path.read_bytes() for path in files if path.suffix != ".nc"])
+            (tmp_path / name / kind).mkdir(parents=True)
+            inputs.KINDS[kind](given, tmp_path / name / kind, Random("7/1"))
+            made.append([path.read_bytes() for path in sorted((tmp_path / name / kind).iterdir())])
         assert made[0] == made[1]
 
 

@@ -4,14 +4,15 @@ import json
 import re
 from collections.abc import Callable
 from contextlib import suppress
-from io import BytesIO
+from copy import deepcopy
+from functools import partial
 from pathlib import Path
 from random import Random
 
 import numpy as np
 
-from torture import mutations
-from torture.specimens import MODEL, PLAN, Specimens, vibration
+from torture import formats, mutations
+from torture.specimens import MODEL, PLAN, Specimens
 
 # Arguments of a command.
 Command = list[str]
@@ -138,71 +139,25 @@ def _dialect(text: str, draw: Random) -> str:
     return text.replace("\n", draw.choice(("\n", "\r\n", "\r"))) if draw.random() < 0.3 else text
 
 
-def matlab(given: Specimens, place: Path, draw: Random) -> Command:
-    """A .mat file with odd variables, or of damaged bytes."""
-    from scipy.io import savemat
-
+def _stored(given: Specimens, place: Path, draw: Random, *, name: str) -> Command:
+    """A file of another format, in any state."""
     _measurement(given, place)
-    text = mutations.toml(given.measured[0]).replace("one.csv", "one.mat")
-    (place / "measured.toml").write_text(text)
-    t, d, v = vibration().T
-    arrays = {"t": t, "d": d, "v": v}
-    stored = BytesIO()
-    savemat(stored, {name: _array(each, draw) for name, each in arrays.items() if draw.random() < 0.95})
-    content = stored.getvalue()
-    (place / "one.mat").write_bytes(mutations.raw(content, draw) if draw.random() < 0.5 else content)
-    return ["check", "measured.toml"]
-
-
-def _array(samples: np.ndarray, draw: Random) -> object:
-    """A channel, mostly as it should be."""
-    kind = draw.random()
-    if kind < 0.6:
-        return samples
-    odd = samples.copy()
-    odd[draw.randrange(odd.size)] = draw.choice(mutations.NUMBERS)
-    shapes = (
-        odd,
-        samples[:, None],
-        samples[:-1],
-        samples[::-1],
-        samples.astype("f4"),
-        samples.astype(complex),
-    )
-    others = (
-        np.stack([samples, samples]),
-        np.zeros((0, 0)),
-        "text",
-        {"a": 1},
-        [[1]],
-        samples * 0.0,
-        samples > 0.0,
-    )
-    return draw.choice((*shapes, *others, np.round(samples), samples * draw.choice((1e-200, 1e200))))
-
-
-def netcdf(given: Specimens, place: Path, draw: Random) -> Command:
-    """A netCDF file with odd variables, or of damaged bytes."""
-    _measurement(given, place)
-    text = mutations.toml(given.measured[0]).replace("one.csv", "one.nc")
-    (place / "measured.toml").write_text(text)
-    _netcdf(place / "one.nc", given.netcdf, draw)
-    return ["check", "measured.toml"]
-
-
-def stored(given: Specimens, place: Path, draw: Random) -> Command:
-    """A file of another format, of damaged bytes."""
-    _measurement(given, place)
-    ending = draw.choice(list(given.stored))
-    text = mutations.toml(given.measured[0]).replace("one.csv", f"one{ending}")
-    for number, name in enumerate("tdv", 1):
-        numbered = ending in (".npy", ".wav", ".uff")
-        inside = "bench/" if ending in (".tdms", ".h5") else ""
-        column = f"{number}" if numbered else f'"{inside}{name}"'
-        text = text.replace(f'column = "{name}"', f"column = {column}")
-    (place / "measured.toml").write_text(text)
-    content = given.stored[ending]
-    (place / f"one{ending}").write_bytes(mutations.raw(content, draw) if draw.random() < 0.9 else content)
+    measurement = deepcopy(given.measured[0]["measurement"])
+    measurement["test"][0]["file"] = name
+    columns = measurement["columns"]
+    if name.endswith((".wav", ".uff")):  # these have a clock of their own
+        del columns["time"]
+    for number, column in enumerate(columns.values(), 1 + name.endswith(".wav")):
+        if name.endswith((".npy", ".wav", ".uff")):
+            column["column"] = number
+        elif name.endswith((".tdms", ".h5")):
+            column["column"] = f"bench/{column['column']}"
+    del measurement["test"][1]
+    (place / "measured.toml").write_text(mutations.toml({"measurement": measurement}))
+    if name.endswith(".nc") and draw.random() < 0.3:
+        _netcdf(place / name, given.stored[name], draw)
+    else:
+        formats.spoil(place / name, given.stored[name], draw)
     return ["check", "measured.toml"]
 
 
@@ -219,14 +174,14 @@ def first(given: Specimens, place: Path, draw: Random) -> Command:
 
 
 def _any_format(given: Specimens, draw: Random) -> tuple[str, bytes]:
-    """Ending and content of a file; text may lack its header, or be in any dialect and encoding."""
-    ending = draw.choice([".csv", ".csv", ".nc", *given.stored])
-    if ending != ".csv":
-        return ending, given.stored.get(ending, given.netcdf)
+    """Name and content of a file; text may lack its header, or be in any dialect and encoding."""
+    name = draw.choice(["one.csv", "one.csv", *given.stored])
+    if name in given.stored:
+        return name, given.stored[name]
     text = _dialect(given.csv[draw.choice(list(given.csv))], draw)
     text = text.partition("\n")[2] if draw.random() < 0.3 else text
     text = mutations.text(text, draw) if draw.random() < 0.7 else text
-    return ending, text.encode(draw.choice(ENCODINGS), "replace")
+    return name, text.encode(draw.choice(ENCODINGS), "replace")
 
 
 def clock(given: Specimens, place: Path, draw: Random) -> Command:
@@ -413,22 +368,13 @@ def _measurement(given: Specimens, place: Path) -> None:
     (place / "model.toml").write_text(mutations.toml(MODEL))
 
 
-# Share of the inputs, those that take longest least.
-KINDS: dict[Kind, float] = {
-    config: 20.0,
-    run: 6.0,
-    measured: 18.0,
-    model: 5.0,
-    csv: 20.0,
-    matlab: 7.0,
-    netcdf: 6.0,
-    stored: 5.0,
-    first: 5.0,
-    clock: 5.0,
-    dataset: 5.0,
-    figure: 1.0,
-    journal: 5.0,
-    diagnosis: 1.0,
-    plan: 1.0,
-    options: 3.0,
+# Files of measured data by their format: all but CSV are called as fixtures of tests are.
+FORMATS: dict[str, Kind] = {"csv": csv, **{name: partial(_stored, name=name) for name in formats.WRITERS}}
+KINDS: dict[str, Kind] = {
+    **{kind.__name__: kind for kind in (config, run, measured, model, first, clock, dataset, figure)},
+    **{kind.__name__: kind for kind in (journal, diagnosis, plan, options)},
+    **FORMATS,
 }
+# Shares of the inputs; those that take longest have the least.
+SHARES = {"config": 20.0, "run": 6.0, "measured": 18.0, "csv": 20.0, "options": 3.0}
+SHARES |= {"model": 5.0, "first": 5.0, "clock": 5.0, "dataset": 5.0, "journal": 5.0}

@@ -1,13 +1,11 @@
 """Valid inputs of every kind, from which hostile ones are made."""
 
 import tomllib
-from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from scipy.io import wavfile
 
 # Name of a config without anything unusual.
 PLAIN = "quick"
@@ -87,7 +85,6 @@ class Specimens:
     csv: dict[str, str]
     dataset: bytes
     journal: bytes
-    netcdf: bytes
     stored: dict[str, bytes]
     diagnosis: dict[str, bytes]
 
@@ -132,6 +129,7 @@ def _csv(samples: np.ndarray) -> str:
 
 def make(directory: Path, diagnosis: dict[str, bytes]) -> Specimens:
     """Make all specimens; ``diagnosis`` holds the files of a diagnosis by name."""
+    from torture.formats import stored
     from torture.mutations import toml
     from wedgesweep import config
     from wedgesweep.sweep.run import Sweep
@@ -146,38 +144,9 @@ def make(directory: Path, diagnosis: dict[str, bytes]) -> Specimens:
         csv=csv_files(),
         dataset=(directory / "whole.nc").read_bytes(),
         journal=_journal(Sweep(settings, directory / "half.nc")),
-        netcdf=_netcdf(directory / "one.nc"),
-        stored=_stored(directory),
+        stored=stored(directory),
         diagnosis=diagnosis,
     )
-
-
-def _netcdf(path: Path) -> bytes:
-    """Return the vibration as the variables of a netCDF file."""
-    import netCDF4
-
-    with netCDF4.Dataset(path, "w") as root:
-        root.createDimension("sample", SAMPLES)
-        for name, unit, samples in zip("tdv", ("s", "mm", "mm/s"), vibration().T, strict=True):
-            variable = root.createVariable(name, "f8", ("sample",))
-            variable.setncattr("units", unit)
-            variable[:] = samples
-    return path.read_bytes()
-
-
-def _stored(directory: Path) -> dict[str, bytes]:
-    """Return the vibration in further formats, by ending, as far as their libraries are here."""
-    import pytest
-
-    from tests import fixture_formats
-
-    columns = dict(zip("tdv", vibration().T, strict=True))
-    np.save(directory / "one.npy", vibration())
-    wavfile.write(directory / "one.wav", int(RATE), (vibration() / 200.0).astype("f4"))
-    for name, write in (*fixture_formats.SPECIMENS, ("one.uff", fixture_formats.uff)):
-        with suppress(pytest.skip.Exception):
-            write(directory / name, columns)
-    return {file.suffix: file.read_bytes() for file in sorted(directory.glob("one.*"))}
 
 
 def _journal(sweep: Any) -> bytes:

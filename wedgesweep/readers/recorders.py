@@ -1,5 +1,6 @@
 """Files of data loggers: TDMS, universal files (UFF 58) and MDF 4."""
 
+import logging
 from collections import Counter
 from pathlib import Path
 from typing import Any
@@ -17,7 +18,10 @@ SAMPLES = 58
 def tdms(file: Path, wanted: Wanted) -> dict[str, Channel | None]:
     """Channels as ``group/channel``, with the clock of their waveform."""
     found: dict[str, Channel | None] = {}
-    with file.open("rb") as stream, module("nptdms").TdmsFile.open(stream) as opened:
+    nptdms = module("nptdms")
+    # It prints warnings of a file that ends early, of which it reads what is there.
+    nptdms.log.log_manager.set_level(logging.CRITICAL)
+    with file.open("rb") as stream, nptdms.TdmsFile.open(stream) as opened:
         for number, channel in enumerate((each for group in opened.groups() for each in group.channels()), 1):
             name = f"{channel.group_name}/{channel.name}"
             step = channel.properties.get("wf_increment")
