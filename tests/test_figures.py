@@ -318,6 +318,9 @@ def test_stick_map_cells_enclose_their_centres():
         for logarithmic in (False, True):
             edges = maps.cell_edges(centres, logarithmic)
             assert ((edges[:-1] < centres) & (centres < edges[1:])).all()
+    # An axis such as the column angle may be negative.
+    assert maps.cell_edges(np.array([-8.0, -4.0, 0.0, 4.0]), False).tolist() == [-10.0, -6.0, -2.0, 2.0, 6.0]
+    assert maps.cell_edges(np.array([0.0, 1.0, 2.0]), False).tolist() == [0.0, 0.5, 1.5, 2.5]
 
 
 def test_nearest_case_is_chosen_and_named(dataset):

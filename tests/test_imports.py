@@ -177,7 +177,9 @@ UNLOADED = {
         *("scipy", "numba", "numpy", "wedgesweep.config"),
     ),
     "from wedgesweep.sweep import dataset, variables": (*OPTIONAL, "numba", "scipy", "wedgesweep.config"),
-    "from wedgesweep.sweep import outcomes, table": ("matplotlib", "numba", "scipy", "wedgesweep.config"),
+    "from wedgesweep.sweep import outcomes; from wedgesweep.figures import models": (
+        *("matplotlib", "numba", "scipy", "wedgesweep.config"),
+    ),
     "import wedgesweep.config": (*OPTIONAL, "wedgesweep.solvers.radau", "wedgesweep.solvers.event_driven"),
 }
 

@@ -118,6 +118,10 @@ def test_a_sample_runs_grows_and_is_drawn(tmp_path):
         figure.draw_without_rendering()
         assert ("160 samples" if kind == "tolerance" else "32 points") in figure.get_suptitle()
         assert all("[" in ax.get_xlabel() for ax in figure.axes)
+    # The band of a single frequency is wide enough to be seen.
+    (ax,) = figures.draw(stored.isel(frequency=[0]), "tolerance").axes
+    assert ax.lines[0].get_xdata().tolist() == pytest.approx([9.9, 10.1])
+    assert np.ptp(ax.collections[0].get_paths()[0].vertices, axis=0).min() > 0.0
 
 
 @pytest.mark.parametrize(

@@ -2,14 +2,30 @@
 
 import csv
 import io
+from collections.abc import Iterator, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
+from wedgesweep.cli.failure import Failure
 from wedgesweep.cli.options import DATASET, STANDARD_OUTPUT, OutputPath
 from wedgesweep.cli.plot import read_dataset
 from wedgesweep.files import CSV, written
 from wedgesweep.formatting import counted
+
+if TYPE_CHECKING:
+    import numpy as np
+    import xarray as xr
+
+
+# Units of coordinates where a dataset that passed through other hands does not state them.
+UNITS = {"frequency": "Hz", "amplitude": "m"}
+COORDINATES = ("friction_law", "beta", "frequency", "amplitude", "scale")
+# Dimensions of waveforms.
+SAMPLED = ("phase", "time")
+# So many cases are turned into text at a time.
+AT_A_TIME = 10_000
 
 
 @click.command()
@@ -29,11 +45,9 @@ def export(path: Path, output: Path | None, variables: str | None) -> None:
     Numbers are in SI units, which the header states. Cases that failed have their status and message, and no
     numbers. Cases that an unfinished run has not solved yet have the status not_run.
     """
-    from wedgesweep.sweep import table
-
     ds = read_dataset(path)
     chosen = None if variables is None else [name.strip() for name in variables.split(",") if name.strip()]
-    rows = table.rows(ds, table.variables_of(ds, chosen))
+    rows = _rows(ds, _variables_of(ds, chosen))
     file = output or Path(f"{path.stem}.csv")
     if file == STANDARD_OUTPUT:
         for some in rows:
@@ -49,3 +63,76 @@ def _text(rows: list[list[str]]) -> str:
     made = io.StringIO()
     csv.writer(made, lineterminator="\n").writerows(rows)
     return made.getvalue()
+
+
+def _variables_of(ds: "xr.Dataset", chosen: Sequence[str] | None) -> list[str]:
+    """Names of the variables to write: those chosen, or all that are a number or word for each case.
+
+    Raises Failure for one that is not there, or that holds a waveform.
+    """
+    dims = ds["status"].dims
+    scalar = [str(name) for name in ds.data_vars if ds[name].dims == dims]
+    if chosen is None:
+        return scalar
+    spectra = [str(name) for name in ds.data_vars if "harmonic" in ds[name].dims]
+    for name in chosen:
+        samples = [ds.sizes[dim] for dim in SAMPLED if name in ds.data_vars and dim in ds[name].dims]
+        if samples:
+            message = f"{name}: a waveform of {samples[0]} samples a case; read it with xarray"
+            raise Failure(message)
+        if name not in (*scalar, *spectra, *ds.coords):
+            message = f"{name}: no such variable; valid here: {', '.join((*scalar, *spectra))}"
+            raise Failure(message)
+    return [name for name in dict.fromkeys(chosen) if name not in ds.coords]
+
+
+def _rows(ds: "xr.Dataset", variables: Sequence[str]) -> Iterator[list[list[str]]]:
+    """The header, then rows of cells, some at a time; numbers in full precision.
+
+    The first columns are the case: law, and beta, frequency and amplitude, or the scale of an input, and
+    numbers of the model that the sweep varies. A column's name ends with its unit in brackets; the parts of a
+    variable that has several a case are columns of their own.
+    """
+    from wedgesweep.figures.models import varied
+
+    names = [*(name for name in COORDINATES if name in ds.coords), *varied(ds)]
+    columns = [column for name in (*names, *variables) for column in _columns(ds, name)]
+    yield [[header for header, _ in columns]]
+    count = ds["status"].size
+    for first in range(0, count, AT_A_TIME):
+        part = slice(first, first + AT_A_TIME)
+        yield [list(row) for row in zip(*(_texts(values[part]) for _, values in columns), strict=True)]
+
+
+def _columns(ds: "xr.Dataset", name: str) -> "Iterator[tuple[str, np.ndarray]]":
+    """Header and values, shape (cases,), of the columns of a variable."""
+    dims = ds["status"].dims
+    given = ds[name]
+    unit = given.attrs.get("units", UNITS.get(name, "1"))
+    bracket = "" if unit in ("", "1") else f" [{unit}]"
+    inner = [dim for dim in given.dims if dim not in dims]
+    meanings = _meanings_of(given)
+    whole = meanings if inner else meanings.broadcast_like(ds["status"])
+    values = whole.transpose(*dims, *inner).values.reshape(ds["status"].size, -1)
+    labels = [""]
+    for dim in inner:
+        labels = [f"{label}_{part}" for label in labels for part in ds[dim].values.tolist()]
+    for label, column in zip(labels, values.T, strict=True):
+        yield f"{name}{label}{bracket}", column
+
+
+def _meanings_of(given: "xr.DataArray") -> "xr.DataArray":
+    """Flags as the words that they stand for; other variables as they are."""
+    if "flag_meanings" not in given.attrs:
+        return given
+    import numpy as np
+
+    words = dict(zip(given.attrs["flag_values"].tolist(), given.attrs["flag_meanings"].split(), strict=True))
+    return given.copy(data=np.vectorize(words.get, otypes=[object])(given.values))
+
+
+def _texts(values: "np.ndarray") -> list[str]:
+    """Values as text; numbers that are not there are empty."""
+    if values.dtype.kind == "f":
+        return ["" if value != value else repr(value) for value in values.tolist()]
+    return [str(value) for value in values.tolist()]

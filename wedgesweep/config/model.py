@@ -25,6 +25,7 @@ from wedgesweep.natural_units import NaturalUnits, natural_units
 from wedgesweep.quantity import Quantity
 from wedgesweep.simulate import Settings, Transient
 from wedgesweep.systems.oscillator import parameters as oscillator
+from wedgesweep.systems.records import stacked
 from wedgesweep.systems.suspension import parameters as suspension
 
 # Records of models that are kept (900 bytes each).
@@ -348,7 +349,7 @@ class Config:
         models, places = np.unique(
             np.column_stack([laws, sweep.varying(indices)]), axis=0, return_inverse=True
         )
-        records = np.concatenate([self._of_model(int(law), *rest) for law, *rest in models.tolist()])
+        records = stacked([self._of_model(int(law), *rest) for law, *rest in models.tolist()])
         records = records[places.ravel()]
         records["input"]["amplitude"] = amplitudes
         records["input"]["omega"] = omegas
@@ -375,7 +376,7 @@ class Config:
         ends = [tuple((key, end(each).item()) for key, each in columns.items()) for end in (np.min, np.max)]
         models = dict.fromkeys([(), *ends])
         cases = [Case(law, 1.0, 1.0, numbers) for law in self.sweep.laws for numbers in models]
-        return np.concatenate([self.record(case) for case in cases])
+        return stacked([self.record(case) for case in cases])
 
     def to_toml(self) -> str:
         """The resolved config with every key, ranges expanded; ``parse`` of it gives the same config."""

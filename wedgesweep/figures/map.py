@@ -6,10 +6,9 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from matplotlib import colormaps
 
 from wedgesweep.figures import over_axes, style
-from wedgesweep.figures.maps import cell_edges
+from wedgesweep.figures.maps import COLOURS, cell_edges
 from wedgesweep.figures.panels import Panels, Target, panels
 
 NAME = "map"
@@ -17,7 +16,6 @@ DESCRIPTION = "a variable over any two axes of the sweep (--x, --y), a panel for
 NEEDS = ("status",)
 ANY_AXES = True
 
-COLOURS = colormaps["cividis"].with_extremes(bad=style.PURPLE)
 # An axis whose values grow by a constant factor, to this share, is drawn on a logarithmic scale.
 EVEN = 0.01
 

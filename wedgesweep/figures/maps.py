@@ -4,12 +4,14 @@ from collections.abc import Callable
 
 import numpy as np
 import xarray as xr
+from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.collections import QuadMesh
 
 from wedgesweep.figures import cases, labels, style
 from wedgesweep.figures.panels import Panels, Target, panels
 
+COLOURS = colormaps["cividis"].with_extremes(bad=style.PURPLE)
 # Edges of the cells along frequency and amplitude.
 Edges = tuple[np.ndarray, np.ndarray]
 
@@ -37,8 +39,10 @@ def panel_per_law(
 
 
 def cell_edges(centres: np.ndarray, logarithmic: bool) -> np.ndarray:
-    """Put edges half way between the centres, n + 1 of them."""
+    """Put edges half way between the centres, n + 1 of them; none below 0 where no centre is."""
     x = np.log(centres) if logarithmic else centres.astype(float)
     steps = np.diff(x) if len(x) > 1 else np.array([0.1 if logarithmic else 0.1 * abs(x[0])])
     edges = np.concatenate([[x[0] - steps[0] / 2], x[:-1] + np.diff(x) / 2, [x[-1] + steps[-1] / 2]])
-    return np.exp(edges) if logarithmic else np.maximum(edges, 0.0)
+    if logarithmic:
+        return np.exp(edges)
+    return edges if centres.min() < 0.0 else np.maximum(edges, 0.0)

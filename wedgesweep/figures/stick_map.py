@@ -4,7 +4,6 @@ from math import nan
 
 import numpy as np
 import xarray as xr
-from matplotlib import colormaps
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.collections import QuadMesh
@@ -12,7 +11,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from wedgesweep.figures import cases, labels, style, validity
-from wedgesweep.figures.maps import Edges, panel_per_law
+from wedgesweep.figures.maps import COLOURS, Edges, panel_per_law
 from wedgesweep.figures.panels import Panels, Target
 
 NAME = "stick-map"
@@ -22,7 +21,6 @@ NEEDS = ("stick_fraction", "omega_n", "breakaway_acceleration")
 FEW_FAILURES = 50
 FEWEST_AMPLITUDES = 4
 MOST_POINTS = 1500  # sampled points that are marked
-COLOURS = colormaps["cividis"].with_extremes(bad=style.PURPLE)
 
 
 def _hatch(

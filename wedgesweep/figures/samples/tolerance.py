@@ -16,6 +16,8 @@ NEEDS = ("status",)
 ANY_AXES = True
 
 PERCENTILES = (5.0, 25.0, 50.0, 75.0, 95.0)
+# Half the width of the band of a single frequency, as a share of it.
+HALF_WIDTH = 0.01
 
 
 def draw(
@@ -37,6 +39,8 @@ def draw(
     for ax, (title, part) in zip(made.axes, parts, strict=True):
         place, values = over_axes.values(part, along), part[variable].transpose("sample", ...).values
         bands = np.nanpercentile(values.astype(float), PERCENTILES, axis=0)
+        if len(place) == 1:
+            place, bands = place * [1.0 - HALF_WIDTH, 1.0 + HALF_WIDTH], np.repeat(bands, 2, axis=1)
         count = len(PERCENTILES)
         for inner in range(count // 2):
             label = f"{PERCENTILES[inner]:g} to {PERCENTILES[count - 1 - inner]:g} %"

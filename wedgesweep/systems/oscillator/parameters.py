@@ -133,7 +133,8 @@ def record(
     structured array, shape (1,)
         Of ``record_type()``.
     """
-    case = records.blank(record_type(), effect_names())
+    names = effect_names()
+    case = records.blank(_kits(names, True)[-1], names)
     p = case[0]
     contact, own = oscillator.get("contact", BASE), p["oscillator"]
     for quantity in OSCILLATOR:
@@ -143,7 +144,7 @@ def record(
     records.set_common(case, law, friction, (amplitude, omega))
     for name in SCALED:
         own[SCALED[name]] *= effects.get(name, {}).get("scale", 1.0)
-    parts = [name for name in effect_names() if name not in ADJUSTED]
+    parts = [name for name in names if name not in ADJUSTED]
     records.set_effects(p, parts, effects)
     _scale_friction(p, oscillator, effects.get(OF_LOAD, {}))
     swings = oscillator.get("restoring_force") == PENDULUM

@@ -156,7 +156,8 @@ def record(
     structured array, shape (1,)
         Of ``record_type()``.
     """
-    case = records.blank(record_type(), effect_names())
+    names = effect_names()
+    case = records.blank(_full_type(names), names)
     p = case[0]
     for quantity in SUSPENSION:
         p["suspension"][quantity.name] = suspension.get(quantity.name, quantity.default * quantity.factor)
@@ -167,18 +168,13 @@ def record(
         effects = {**effects, jamming.NAME: {LOCKED_IN.name: locked_in}}
     nominal = p["suspension"].copy()
     records.set_common(case, law, friction, (amplitude, omega))
-    records.set_effects(p, effect_names(), effects)
-    acting = _acting(p)
+    records.set_effects(p, names, effects)
+    acting = records.acting(p, names)
     p["geometry"]["kit"], p["geometry"]["opens"] = _kit_of(p, acting), has_unilateral_joints(p)
     if _needs_regularisation(p, acting):
         _regularise(p, nominal)
     prepare(case, acting)
     return case
-
-
-def _acting(p: np.void) -> list[str]:
-    """Effects of a record that need mechanics of their own."""
-    return records.acting(p, effect_names())
 
 
 def has_unilateral_joints(rows: np.ndarray | np.void) -> np.ndarray:
@@ -211,7 +207,7 @@ def regularised_velocity(suspension: Mapping[str, float] | np.void) -> float:
 
 def is_regularised(p: np.void) -> bool:
     """Whether effects regularise the case's Coulomb law: it is a steep ramp then."""
-    return _needs_regularisation(p, _acting(p))
+    return _needs_regularisation(p, records.acting(p, effect_names()))
 
 
 def _needs_regularisation(p: np.void, acting: Sequence[str]) -> bool:
