@@ -122,7 +122,7 @@ def test_whatever_netcdf4_raises_the_file_is_damaged(here, monkeypatch):
 
 def test_an_empty_file_is_replaced_where_that_is_asked_for(here):
     (here / "small.nc").touch()
-    assert "small.nc: empty file; --fresh replaces it" in invoke("run", "small.toml", code=2)
+    assert "small.nc: empty file; run --fresh replaces it" in invoke("run", "small.toml", code=2)
     invoke("run", "small.toml", "--fresh")
     assert (here / "small.nc").stat().st_size > 0
 

@@ -8,7 +8,7 @@ from itertools import pairwise
 import pytest
 
 from tests import fixture_diagnosis
-from wedgesweep import diagnosis_result, formatting, report
+from wedgesweep import diagnosis_result, formatting, report, rotation
 from wedgesweep.diagnosis_result import VERDICTS
 from wedgesweep.effects import EFFECTS
 from wedgesweep.errors import InputError, SweepError
@@ -459,6 +459,19 @@ def test_equations_of_what_was_added(tmp_path):
     assert not any("_" in text for text in page.texts if text.startswith("mu"))
     assert EFFECTS["guide_friction"].described() in page.text
     assert "Family: missing-force" in page.text
+
+
+@pytest.mark.usefixtures("no_figures")
+def test_of_a_rotation_torques_and_angles_are_told(tmp_path):
+    document, _ = fixture_diagnosis.write(tmp_path, "none-of-mine")
+    document["model"] = document["model"] | {"system": "oscillator", "motion": "rotation"}
+    (tmp_path / diagnosis_result.JSON).write_text(json.dumps(rotation.written(document)), encoding="utf-8")
+    page = Page(report.write(tmp_path).read_text(encoding="utf-8"))
+    assert not re.search(r"(?<![\w.-])(?:forces?|displacement)(?![\w-])|\(N\)|\bmm\b", page.text, re.I)
+    assert "The missing torque" in page.text
+    assert "differs from the base model's by 0.4 N m" in plain(page.text)
+    assert "at 5.00 × 10⁻⁴ rad and 0.04 rad/s" in plain(page.text)
+    assert "stiffness of the spring (N m/rad)" in page.text
 
 
 @pytest.mark.usefixtures("no_figures")

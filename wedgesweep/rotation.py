@@ -33,9 +33,18 @@ UNITS = {
     **{"mm/s": "mrad/s", "mm": "mrad", "µm": "µrad", "m/s²": "rad/s²", "m/s^2": "rad/s^2", "m/s": "rad/s"},
     **{"m or m/s": "rad or rad/s", "m, m/s or m/s^2": "rad, rad/s or rad/s^2"},
     **{"m s-1": "rad s-1", "m s-2": "rad s-2", "m": "rad", "N s": "N m s", "N": "N m"},
+    **{"N/m": "N m/rad", "N s/m": "N m s/rad", "N s²/m²": "N m s²/rad²", "kg": "kg m²"},
 }
+# Words of quantities, and what a rotation has in their place.
+WORDS = {
+    **{"a displacement": "an angle", "displacement": "angle", "Displacement": "Angle"},
+    **{"force": "torque", "Force": "Torque", "forces": "torques", "Forces": "Torques"},
+}
+_WORD = re.compile(rf"(?<![\w.-])(?:{'|'.join(sorted(WORDS, key=len)[::-1])})(?![\w-])")
 _KEY = re.compile(rf"\b(?:{'|'.join([*KEYS, *(rf'[a-z_]+{ending}' for ending in ENDINGS)])})\b")
-_UNIT = re.compile(rf"(?<=[\[\d ])(?:{'|'.join(sorted(map(re.escape, UNITS), key=len)[::-1])})(?=[\],;. ]|$)")
+_UNITS = "|".join(sorted(map(re.escape, UNITS), key=len)[::-1])
+_UNIT = re.compile(rf"(?<=[\[\d ])(?:{_UNITS})(?=[\],;. ]|$)")
+_UNIT_OF_SYMBOL = re.compile(rf"(?<=\()(?:{_UNITS})(?=\))")
 
 
 def turns(document: Mapping[str, Any]) -> bool:
@@ -94,11 +103,13 @@ def in_units(words: str) -> str:
     return _UNIT.sub(lambda match: UNITS[match.group()], words)
 
 
-def label(words: str) -> str:
-    """A text of a figure; one with a unit in brackets is a label, and has the words of a rotation, too."""
-    if "[" in words:
-        words = words.replace("displacement", "angle").replace("force", "torque")
-    return in_units(words)
+def prose(words: str) -> str:
+    """A text of a report or a figure in the words of a rotation; names and keys stay as they are.
+
+    A unit by itself in brackets, as the meaning of a symbol has it, is that of a rotation, too.
+    """
+    turned = _WORD.sub(lambda match: WORDS[match.group()], words)
+    return _UNIT_OF_SYMBOL.sub(lambda match: UNITS[match.group()], turned)
 
 
 def with_units(dataset: "xr.Dataset") -> "xr.Dataset":

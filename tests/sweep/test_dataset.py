@@ -123,7 +123,7 @@ def test_read_says_what_it_cannot_read(tmp_path, sweep):
     for broken, words in ((b"", "empty file"), (b"text", damaged), (content[: len(content) // 2], damaged)):
         (tmp_path / "x.nc").write_bytes(broken)
         with pytest.raises(SweepError, match=words):
-            dataset.read(tmp_path / "x.nc")
+            dataset.read_sweep(tmp_path / "x.nc")
 
 
 def test_blank_records_have_no_numbers():

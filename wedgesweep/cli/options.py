@@ -36,9 +36,17 @@ DATASET = click.argument("path", metavar="OUT", type=GivenPath())
 # A path that stands for the standard output.
 STANDARD_OUTPUT = Path("-")
 
+
+class WholeRange(click.IntRange):
+    """A whole number in a range."""
+
+    name = "whole number"
+
+
 N_JOBS = click.option(
     "--n-jobs",
-    type=click.IntRange(min=1),
+    type=WholeRange(min=1),
+    metavar="N",
     default=None,
     help="Number of parallel jobs; default: one per processor.",
 )
@@ -90,6 +98,8 @@ def axis_values(texts: Iterable[str]) -> dict[str, float | str]:
 
 class FiniteRange(click.FloatRange):
     """A number in a range; a comparison alone does not refuse nan."""
+
+    name = "number"
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         found = super().convert(value, param, ctx)

@@ -11,7 +11,7 @@ from wedgesweep.cli.compiling import announce_compiling
 from wedgesweep.cli.cost import MANY, require_confirmed
 from wedgesweep.cli.failure import SOME_FAILED, Failure, exit_code
 from wedgesweep.cli.messages import log
-from wedgesweep.cli.options import CONFIG, N_JOBS, PLUGIN, FiniteRange, OutputPath, command_line
+from wedgesweep.cli.options import CONFIG, N_JOBS, PLUGIN, FiniteRange, OutputPath, WholeRange, command_line
 from wedgesweep.cli.progress import ProgressReport
 from wedgesweep.cli.summary import print_summary
 from wedgesweep.cli.verify import print_verification
@@ -68,12 +68,12 @@ BACKENDS = ("threads", "loky", "dask")
 @click.option("--yes", is_flag=True, help=f"Run even if there are more than {MANY} cases.")
 @click.option(
     "--verify",
-    type=click.IntRange(min=1),
+    type=WholeRange(min=1),
     metavar="N",
     help="Solve N random cases of the result, also of an earlier run, again by Radau at rtol 1e-9, and print "
     "the largest difference; exit code 1 beyond 1e-3 of an amplitude ratio or a stick fraction of 1e-2.",
 )
-@click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of --verify.")
+@click.option("--seed", type=WholeRange(min=0), default=0, show_default=True, help="Seed of --verify.")
 @click.pass_context
 def run(
     ctx: click.Context,

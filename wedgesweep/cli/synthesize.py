@@ -8,7 +8,7 @@ import click
 from wedgesweep import formatting
 from wedgesweep.cli.compiling import announce_compiling
 from wedgesweep.cli.messages import log
-from wedgesweep.cli.options import CONFIG, N_JOBS, PLUGIN, FiniteRange, GivenPath
+from wedgesweep.cli.options import CONFIG, N_JOBS, PLUGIN, FiniteRange, GivenPath, WholeRange
 from wedgesweep.synthesize.options import NOISES, QUANTITIES
 
 SHARE = FiniteRange(min=0.0, max=1.0, max_open=True)
@@ -37,7 +37,7 @@ SHARE = FiniteRange(min=0.0, max=1.0, max_open=True)
     show_default=True,
     help="Std of the noise relative to the channel's rms.",
 )
-@click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Random seed.")
+@click.option("--seed", type=WholeRange(min=0), default=0, show_default=True, help="Random seed.")
 @click.option("-o", "--output", type=GivenPath(), help="Directory to write; default: CONFIG-measured.")
 @click.option(
     "--periods",
@@ -54,7 +54,7 @@ SHARE = FiniteRange(min=0.0, max=1.0, max_open=True)
 )
 @click.option(
     "--settle-periods",
-    type=click.IntRange(min=1),
+    type=WholeRange(min=1),
     default=60,
     show_default=True,
     help="Number of periods after which the motion counts as steady, if it has not repeated before.",

@@ -115,7 +115,7 @@ def _relabel(figure: "Figure | SubFigure") -> None:
 
     for label in figure.findobj(Text):
         if isinstance(label, Text):
-            label.set_text(rotation.label(label.get_text()))
+            label.set_text(rotation.prose(rotation.in_units(label.get_text())))
 
 
 def options(kind: catalogue.FigureKind) -> tuple[str, ...]:

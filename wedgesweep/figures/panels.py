@@ -12,7 +12,8 @@ from matplotlib.figure import Figure, SubFigure
 
 from wedgesweep.figures import style
 
-CHARACTERS_PER_INCH = 13  # of a title
+CHARACTERS_PER_INCH = 13  # of a title or legend
+HANDLE = 8  # characters that the mark of a label in a legend takes
 TITLE_MARGIN = 0.08  # inches
 
 # Where to draw; None stands for a new figure.
@@ -63,7 +64,8 @@ class Panels:
         if self.embedded:
             self.axes[0].legend(handles, labels, fontsize=8)
             return
-        place: dict[str, Any] = {"loc": "outside lower center", "ncols": columns}
+        room = CHARACTERS_PER_INCH * self.figure.bbox.width / self.figure.dpi
+        place: dict[str, Any] = {"loc": "outside lower center", "ncols": _fitting(labels, columns, room)}
         self.figure.legend(handles, labels, fontsize=8.5, frameon=False, **place)
 
     def colorbar(self, mappable: ScalarMappable, label: str, axes: Sequence[Axes] | None = None) -> Colorbar:
@@ -103,6 +105,16 @@ def panels(
     for ax in grid[:count]:
         style.dress(ax)
     return Panels(target, list(grid[:count]))
+
+
+def _fitting(labels: Sequence[str], most: int, room: float) -> int:
+    """Columns of a legend, at most ``most``, whose longest labels fit side by side (characters)."""
+    sizes = [len(label) + HANDLE for label in labels]
+    for columns in range(min(most, len(sizes)), 1, -1):
+        rows = -(-len(sizes) // columns)
+        if sum(max(sizes[place : place + rows]) for place in range(0, len(sizes), rows)) <= room:
+            return columns
+    return 1
 
 
 def _embedded(ax: Axes, count: int) -> Panels:

@@ -58,13 +58,13 @@ def _nearest(force: dict[str, Any]) -> Markup:
 
 
 def _further(force: dict[str, Any]) -> str:
-    place = force["next_place"]
-    step = force["step_N"]
-    friction = "" if step is None else f"The friction at rest differs from the base model's by {step:.3g} N. "
+    place = " and ".join(phrases.size(force["next_place"], key) for key in force["next_place"])
+    step = next(key for key in force if key.startswith("step_"))
+    friction = f"The friction at rest differs from the base model's by {phrases.size(force, step)}. "
     return (
-        f"{friction}A further test would show most at {place['displacement_mm']:.3g} mm and "
-        f"{place['velocity_mm_per_s']:.3g} mm/s, where the force is known least. {FORCE_CONFIG} is the base "
-        f"model with this force ({FORCE_TABLE}), an ordinary config."
+        f"{friction if force[step] is not None else ''}A further test would show most at {place}, where the "
+        f"force is known least. {FORCE_CONFIG} is the base model with this force ({FORCE_TABLE}), an "
+        "ordinary config."
     )
 
 

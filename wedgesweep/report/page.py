@@ -3,6 +3,7 @@
 from importlib.resources import files
 from string import Template
 
+from wedgesweep import rotation
 from wedgesweep.diagnosis_result import DiagnosisResult
 from wedgesweep.report import (
     candidates,
@@ -15,6 +16,7 @@ from wedgesweep.report import (
     misfit,
     missing_force,
     next_test,
+    phrases,
     rivals,
     sampled,
     summary,
@@ -55,6 +57,8 @@ def render(result: DiagnosisResult, n_jobs: int = 1) -> str:
             method.section(result),
         ]
     )
+    if phrases.turns(result.document):
+        content = Markup(rotation.prose(content))
     return Template(_read("page.html")).substitute(
         title=html.text(f"Diagnosis of {result.document['title']}"),
         style=_read("style.css"),

@@ -106,6 +106,11 @@ def system(document: Mapping[str, Any]) -> str:
     return document["model"].get("system", "suspension")
 
 
+def turns(document: Mapping[str, Any]) -> bool:
+    """Whether a diagnosis is of an oscillator that turns."""
+    return document["model"].get("motion") == rotation.ROTATION
+
+
 def meaning(effect: str, document: Mapping[str, Any]) -> str:
     """What an effect is, in words, on the system of a diagnosis."""
     if effect not in EFFECTS:
@@ -189,24 +194,24 @@ def next_test(test: Mapping[str, Any]) -> str:
     if test.get("motion") == "sweep":
         return f"a sine-sweep from {_band(test)} with {_amplitude(test)}"
     name = "the force under a sine of" if test.get("kind") == "loop" else "a test at"
-    return f"{name} {_size(test, 'frequency_hz')} and {_amplitude(test)}"
+    return f"{name} {size(test, 'frequency_hz')} and {_amplitude(test)}"
 
 
 def instruction(test: Mapping[str, Any]) -> str:
     """What to do for the recommended test, as an order."""
     if test.get("motion") == "release":
-        seconds = _size(test, "duration_s", 2)
+        seconds = size(test, "duration_s", 2)
         return f"Release the mass at rest from {_start(test)} and record its motion for {seconds}"
-    seconds = _size(test, "duration_s", 2)
+    seconds = size(test, "duration_s", 2)
     if test.get("motion") == "sweep":
         return f"Sweep a sine of {_amplitude(test)} from {_band(test)} in {seconds}; record input and motion"
-    sine = f"a sine of {_size(test, 'frequency_hz')} and {_amplitude(test)}"
+    sine = f"a sine of {size(test, 'frequency_hz')} and {_amplitude(test)}"
     return f"Impose {sine} for {seconds}; record displacement and force"
 
 
 def columns(named: Mapping[str, str], document: Mapping[str, Any]) -> dict[str, str]:
     """Headings and keys of a table, in the units of the diagnosis."""
-    if document["model"].get("motion") != rotation.ROTATION:
+    if not turns(document):
         return dict(named)
     turned = {key: rotation.turned_key(key)[0] for key in named.values()}
     return {
@@ -216,20 +221,20 @@ def columns(named: Mapping[str, str], document: Mapping[str, Any]) -> dict[str, 
 
 
 def _start(test: Mapping[str, Any]) -> str:
-    return _size(test, "start_rad" if "start_rad" in test else "start_mm")
+    return size(test, "start_rad" if "start_rad" in test else "start_mm")
 
 
-def _size(test: Mapping[str, Any], key: str, digits: int = 3) -> str:
-    """A number of a test with its unit."""
+def size(test: Mapping[str, Any], key: str, digits: int = 3) -> str:
+    """A number of a table with its unit, which ends its key."""
     return f"{short(test[key], digits)}{NO_BREAK}{split_key(key)[1]}"
 
 
 def _amplitude(test: Mapping[str, Any]) -> str:
-    return _size(test, f"amplitude_{amplitude_unit(test)}")
+    return size(test, f"amplitude_{amplitude_unit(test)}")
 
 
 def _band(test: Mapping[str, Any]) -> str:
-    return f"{short(test['frequency_hz'], 3)} to {_size(test, 'to_hz')}"
+    return f"{short(test['frequency_hz'], 3)} to {size(test, 'to_hz')}"
 
 
 def amplitude_unit(test: Mapping[str, Any]) -> str:

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
-from wedgesweep import formatting
+from wedgesweep import formatting, rotation
 from wedgesweep.diagnosis_result import DiagnosisResult, Reason
 from wedgesweep.report import ladder, phrases
 
@@ -14,7 +14,8 @@ NAMES_LISTED = 3
 def sentence(result: DiagnosisResult) -> str:
     """Return the sentence as plain text; each verdict has its template."""
     answer = TEMPLATES[result.verdict](result).removesuffix(".")
-    return answer + _never_steady(result) + _untried(result) + unfinished(result) + "."
+    whole = answer + _never_steady(result) + _untried(result) + unfinished(result) + "."
+    return rotation.prose(whole) if phrases.turns(result.document) else whole
 
 
 def unfinished(result: DiagnosisResult) -> str:

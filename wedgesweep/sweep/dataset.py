@@ -123,13 +123,10 @@ def read(path: Path) -> "xr.Dataset":
     if problem := confusion(path, SWEEP):
         raise SweepError(problem)
     try:
-        empty = regular(path).stat().st_size == 0
+        regular(path)
     except OSError as error:
         message = f"{path}: {str(error.strerror).lower()}"
         raise SweepError(message) from error
-    if empty:
-        message = f"{path}: empty file; --fresh replaces it"
-        raise SweepError(message)
     import xarray as xr
 
     try:
@@ -141,6 +138,9 @@ def read(path: Path) -> "xr.Dataset":
 
 def read_sweep(path: Path) -> "xr.Dataset":
     """Load the dataset of a sweep; raises SweepError, also if it lacks what every sweep has."""
+    if path.is_file() and not path.stat().st_size:
+        message = f"{path}: empty file; run --fresh replaces it"
+        raise SweepError(message)
     found = read(path)
     if faults := list(_faults(found)):
         message = f"{path}: not the dataset of a sweep: {'; '.join(faults)}"

@@ -110,7 +110,7 @@ def draw(target: Target, result: DiagnosisResult) -> Panels:
         ax.axvline(value, color="0.3", linestyle=dashes, linewidth=1.2, zorder=1)
     _draw_rows(ax, rows, left)
     style.log_ticks(ax.xaxis)
-    style.label([ax], "accuracy: model error with which all tests are explained [% of the response]", "")
+    style.label([ax], "model error that explains all tests [% of the response]", "")
     _legend(made, rows, lines)
     made.title("Accuracy of the best explanations, and of their rivals", "further left is better")
     return made

@@ -11,6 +11,7 @@ NAME = "missing-force"
 DESCRIPTION = "empirical force that no name explains, over velocity, over displacement, and as a map"
 
 BAND = 1.96  # standard deviations
+REACH = 1.5  # of the force axes, in the largest forces of the map
 
 
 def draw(target: Target, result: DiagnosisResult) -> Panels:
@@ -26,14 +27,15 @@ def draw(target: Target, result: DiagnosisResult) -> Panels:
     words = labels.of(data)
     made = panels(target, 3, size=(3.4, 2.9), share=False)
     over_speed, over_place, both = made.axes
-    _curve(over_speed, data["force_speed"].values, *_pair(data, "speed"))
-    _curve(over_place, data["force_place"].values, *_pair(data, "place"))
-    over_speed.set_xlabel(f"${words.rate}$ [mm/s]")
-    over_place.set_xlabel(f"${words.motion}$ [mm]")
-    for ax in (over_speed, over_place):
-        ax.set_ylabel("missing force [N]")
+    motion, rate = f"${words.motion}$ [mm]", f"${words.rate}$ [mm/s]"
     force = data["missing_force"].values
     largest = float(np.nanmax(np.abs(force)))
+    for ax, over, name in ((over_speed, "speed", rate), (over_place, "place", motion)):
+        _curve(ax, *(data[each].values for each in (f"force_{over}", *_averages(over))))
+        # Where the force is hardly known its band leaves the panel.
+        ax.set_ylim(-REACH * largest, REACH * largest)
+        ax.set_xlabel(name, fontsize=9)
+        ax.set_ylabel("missing force [N]", fontsize=9)
     shown = both.pcolormesh(
         data["force_place"].values * style.MM,
         data["force_speed"].values * style.MM,
@@ -43,16 +45,16 @@ def draw(target: Target, result: DiagnosisResult) -> Panels:
         vmax=largest,
         shading="nearest",
     )
-    both.set_xlabel(f"${words.motion}$ [mm]")
-    both.set_ylabel(f"${words.rate}$ [mm/s]")
+    both.set_xlabel(motion, fontsize=9)
+    both.set_ylabel(rate, fontsize=9)
     made.colorbar(shown, "missing force [N]", [both])
     made.title(f"Force on the {words.body} that no name explains", "bands: 95 %; empty: not measured")
     return made
 
 
-def _pair(data: object, over: str) -> tuple[np.ndarray, np.ndarray]:
-    name = f"missing_force_over_{over}"
-    return data[name].values, data[f"{name}_std"].values  # type: ignore[index]
+def _averages(over: str) -> tuple[str, str]:
+    """Names of the force averaged over place or speed, and of its standard deviation."""
+    return f"missing_force_over_{over}", f"missing_force_over_{over}_std"
 
 
 def _curve(ax: Axes, along: np.ndarray, force: np.ndarray, std: np.ndarray) -> None:
