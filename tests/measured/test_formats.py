@@ -338,8 +338,7 @@ def test_long_records_are_decimated_and_their_harmonics_stay():
 def test_more_rows_than_are_used(tmp_path):
     t = np.arange(310_000) / 50_000.0
     rows = np.column_stack([t, np.cos(2.0 * np.pi * 20.0 * t), -np.sin(2.0 * np.pi * 20.0 * t) * 125.66])
-    path = fixture_measured.write(tmp_path)
-    np.savetxt(tmp_path / "one.csv", rows, "%.7g", ",", header="t,d,v", comments="")
-    (test,) = measured.read(path).tests
-    assert test.remarks == ("low-passed and decimated from 310000 samples to one in 2",)
+    np.save(tmp_path / "one.npy", rows)
+    test = read_with(tmp_path, ("one.csv", "one.npy"), *NUMBERED)
+    assert test.remarks[-1] == "low-passed and decimated from 310000 samples to one in 2"
     assert abs(test.displacement[5000:9000].std() * np.sqrt(2.0) - 1e-3) < 1e-6

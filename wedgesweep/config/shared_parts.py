@@ -16,8 +16,9 @@ def with_shared_parts(schema: dict[str, Any]) -> dict[str, Any]:
     counts: Counter[str] = Counter()
 
     def count(part: dict[str, Any]) -> dict[str, Any]:
-        counts[_text(part)] += 1
-        return _mapped(part, count)
+        counts[text := _text(part)] += 1
+        # What is inside of a part that was met before is written once with it.
+        return part if counts[text] > 1 else _mapped(part, count)
 
     names: dict[str, str] = {}
     definitions: dict[str, Any] = {}
