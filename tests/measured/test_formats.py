@@ -11,6 +11,7 @@ from tests.command import invoke
 from tests.fixture_measured import MEASURED, csv_lines, lines, vibration
 from wedgesweep import measured
 from wedgesweep.measured.decimation import shortened
+from wedgesweep.readers.survey import survey
 
 
 @pytest.fixture(scope="module")
@@ -191,6 +192,27 @@ def test_columns_of_one_array_by_number_and_of_a_matrix_by_name(tmp_path, plain)
     np.testing.assert_allclose(found.displacement, plain.displacement, rtol=1e-5)
     with pytest.raises(measured.MeasuredError, match=r'variable "q" holds \d+ x 3 numbers, and no column 4'):
         read_with(tmp_path, ("one.csv", "one.npz"), ('"d"', '"q[4]"'))
+
+
+@pytest.mark.parametrize("name", ["one.mat", "new.mat"])
+def test_arrays_of_three_dimensions_and_of_a_new_matlab(tmp_path, plain, name):
+    """Simulink logs a signal as 1 x 1 x n and three as 3 x 1 x n; HDF5 has MATLAB's dimensions in reverse."""
+    columns = np.array(vibration())
+    arrays = {"t": columns[0][None, None], "q": columns[:, None], "m": columns.T}
+    if name == "one.mat":
+        savemat(tmp_path / name, arrays)
+    else:
+        with pytest.importorskip("h5py").File(tmp_path / name, "w") as file:
+            for each, values in arrays.items():
+                file[each] = values.T
+                file[each].attrs["MATLAB_class"] = np.bytes_("double")
+    found = read_with(tmp_path, ("one.csv", name), ('"d"', '"q[2]"'), ('"v"', '"m[3]"'))
+    np.testing.assert_allclose(found.displacement, plain.displacement, rtol=1e-5)
+    np.testing.assert_allclose(found.velocity, plain.velocity, rtol=1e-4)
+    assert [column.name for column in survey(tmp_path / name).columns].count("q[2]") == 1
+    savemat(tmp_path / "one.mat", {"t": columns[0], "d": np.zeros((5, 4, 3)), "v": columns[2]})
+    with pytest.raises(measured.MeasuredError, match="holds 5 x 4 x 3 numbers; name one column"):
+        read_with(tmp_path, ("one.csv", "one.mat"))
 
 
 CLOCKLESS = ('time = { column = "t", unit = "s" }\n', "")

@@ -115,19 +115,21 @@ def _grid(numbers: Mapping[str, Number], transient: bool) -> Table:
         *((SCALE,) if transient else INPUT_KEYS),
         OMEGA_N_KEY,
         (
-            Axes(
-                key="axes",
-                meaning="other axes of the grid: values of numbers of the model",
-                groups=((TOGETHER,),),
+            table(
+                "axes",
+                "other axes of the grid: values of numbers of the model",
+                TOGETHER,
+                kind=Axes,
                 numbers=numbers,
                 optional=True,
                 unknown=NO_NUMBER,
                 example=("suspension.wedge_angle_deg", {"start": 28, "stop": 45, "num": 18}),
             ),
-            Sample(
-                key="sample",
-                meaning="instead of axes: samples of numbers of the model",
-                groups=tuple((key,) for key in SAMPLE_KEYS),
+            table(
+                "sample",
+                "instead of axes: samples of numbers of the model",
+                *SAMPLE_KEYS,
+                kind=Sample,
                 numbers=numbers,
                 optional=True,
                 unknown=NO_NUMBER,
@@ -148,14 +150,13 @@ def _listed(numbers: Mapping[str, Number]) -> Table:
         TableList(
             key="case",
             meaning="one case each",
-            item=WithNumbers(
-                key="case",
-                meaning="one case",
-                groups=(
-                    (LAW,),
-                    (Number.of(BETA, example=0.4), Number.of(FREQUENCY, example=20.0)),
-                    (Number.of(AMPLITUDE, example=1.0), Number.of(FORCE_AMPLITUDE, example=1.0)),
-                ),
+            item=table(
+                "case",
+                "one case",
+                LAW,
+                (Number.of(BETA, example=0.4), Number.of(FREQUENCY, example=20.0)),
+                (Number.of(AMPLITUDE, example=1.0), Number.of(FORCE_AMPLITUDE, example=1.0)),
+                kind=WithNumbers,
                 numbers=numbers,
                 example=("suspension.wedge_angle_deg", 30.0),
             ),

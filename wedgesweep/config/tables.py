@@ -55,10 +55,10 @@ class Table(Key):
         }
 
 
-def table(key: str, meaning: str, *entries: Key | Group, **more: Any) -> Table:
-    """Make a table; an entry is a key, or a tuple of keys that exclude each other."""
+def table(key: str, meaning: str, *entries: Key | Group, kind: type[Table] = Table, **more: Any) -> Table:
+    """Make a table of a kind; an entry is a key, or a tuple of keys that exclude each other."""
     groups = tuple(entry if isinstance(entry, tuple) else (entry,) for entry in entries)
-    return Table(key=key, meaning=meaning, groups=groups, **more)
+    return kind(key=key, meaning=meaning, groups=groups, **more)
 
 
 def _in_force(group: Group, value: dict[str, Any], at: str, problems: list[str]) -> Group:

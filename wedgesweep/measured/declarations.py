@@ -75,12 +75,10 @@ class Inline(Table):
 
     def read(self, value: Any, path: str, problems: list[str]) -> dict[str, Any]:
         read = super().read(value, path, problems)
-        for key, valid in (
-            ("sign", read.get("sign") in (None, 1.0, -1.0)),
-            ("scale", read.get("scale") != 0.0),
-        ):
-            if not valid:
-                problems.append(f"{path}.{key}: {read[key]:g} is out of range; it must be {VALID[key]}")
+        faults = [("sign", "1 or -1")] if read.get("sign") not in (None, 1.0, -1.0) else []
+        faults += [("scale", "another number than 0")] if read.get("scale") == 0.0 else []
+        for key, valid in faults:
+            problems.append(f"{path}.{key}: {read[key]:g} is out of range; it must be {valid}")
         return read
 
     @property
@@ -192,15 +190,10 @@ SIGN = Quantity("sign", nan, "1, or -1 for a channel of the other sign", minimum
 DELAY = Quantity("delay_ms", nan, "time by which this channel is late")
 DELAY_STD = Quantity("delay_std_ms", nan, "std of that time, which is then fitted", above=0.0)
 RATE = Quantity("rate_hz", nan, "sampling rate, where no column holds the time", above=0.0)
-VALID = {"sign": "1 or -1", "scale": "another number than 0"}
 # Keys that every channel has beside its column and its unit.
 COMMON = (
     Text(key="file", meaning="file of this channel; by default that of the test", optional=True),
-    Number.of(SCALE, optional=True),
-    Number.of(SIGN, optional=True),
-    Number.of(DELAY, optional=True),
-    Number.of(DELAY_STD, optional=True),
-    Number.of(RATE, optional=True),
+    *(Number.of(each, optional=True) for each in (SCALE, SIGN, DELAY, DELAY_STD, RATE)),
     Texts(key="missing", meaning="texts of missing samples, beside NA, NaN, #N/A", optional=True),
 )
 INTERVAL = Flag(
@@ -208,23 +201,24 @@ INTERVAL = Flag(
 )
 
 
-def _channel(name: str, meaning: str, column: str, unit: str, *more: Key, optional: bool = False) -> Inline:
-    keys = (
+def _channel(name: str, meaning: str, column: str, unit: str, *more: Key, optional: bool = False) -> Table:
+    return table(
+        name,
+        meaning,
         Column(key="column", meaning="name of the column, or its number", example=column),
         Unit(key="unit", meaning="its unit", choices=tuple(units(name)), example=unit),
         *more,
         *((INTERVAL, COMMON[-1]) if name == "time" else COMMON),
+        kind=Input if name == INPUT else Inline,
+        optional=optional,
     )
-    groups = tuple((key,) for key in keys)
-    kind = Input if name == INPUT else Inline
-    return kind(key=name, meaning=meaning, groups=groups, optional=optional)
 
 
 def _override(channel: Key) -> Table:
     """The same channel in one test: every key is optional there."""
     assert isinstance(channel, Table)
-    groups = tuple((replace(key, optional=True, default=None),) for key in channel.keys.values())
-    return replace(channel, groups=groups, optional=True)
+    keys = (replace(key, optional=True, default=None) for key in channel.keys.values())
+    return table(channel.key, channel.meaning, *keys, kind=type(channel), optional=True)
 
 
 def _uncertain(name: str) -> Number:
@@ -289,45 +283,34 @@ UNCERTAIN = table(
     "uncertain", "uncertain numbers of the model", *map(_uncertain, (*PARAMETERS, DISTORTION)), default={}
 )
 
-TEST = RecordTable(
-    key="test",
-    meaning="one record",
-    groups=(
-        (Text(key="file", meaning="file, relative to this one", example="20hz.csv"),),
-        (
-            Choice(
-                key="kind",
-                meaning="steady: periodic response; transient: decay, sweep; loop: force under a motion",
-                choices=KINDS,
-                default=STEADY,
-            ),
-        ),
-        (Number.of(LOWPASS, optional=True),),
-        (Number.of(FREQUENCY, optional=True),),
-        (Number.of(AMPLITUDE, optional=True),),
-        (Number.of(FORCE_AMPLITUDE, optional=True),),
-        (Number.of(AMPLITUDE_STD),),
-        (Number.of(FROM, optional=True),),
-        (Number.of(TO, optional=True),),
-        (DETREND,),
-        (
-            Text(
-                key="repeat_of",
-                meaning="file of the test that this one repeats: what differs is noise",
-                optional=True,
-            ),
-        ),
-        (UNDRIVEN,),
-        (
-            table(
-                "columns",
-                "keys of channels that differ in this test",
-                *map(_override, COLUMNS.keys.values()),
-                optional=True,
-            ),
-        ),
-        (Overrides(key="model", meaning="numbers of the model in this test", optional=True),),
+TEST = table(
+    "test",
+    "one record",
+    Text(key="file", meaning="file, relative to this one", example="20hz.csv"),
+    Choice(
+        key="kind",
+        meaning="steady: periodic response; transient: decay, sweep; loop: force under a motion",
+        choices=KINDS,
+        default=STEADY,
     ),
+    *(Number.of(each, optional=True) for each in (LOWPASS, FREQUENCY, AMPLITUDE, FORCE_AMPLITUDE)),
+    Number.of(AMPLITUDE_STD),
+    *(Number.of(each, optional=True) for each in (FROM, TO)),
+    DETREND,
+    Text(
+        key="repeat_of",
+        meaning="file of the test that this one repeats: what differs is noise",
+        optional=True,
+    ),
+    UNDRIVEN,
+    table(
+        "columns",
+        "keys of channels that differ in this test",
+        *map(_override, COLUMNS.keys.values()),
+        optional=True,
+    ),
+    Overrides(key="model", meaning="numbers of the model in this test", optional=True),
+    kind=RecordTable,
 )
 
 MEASUREMENT = table(

@@ -4,6 +4,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from wedgesweep.processes import apart
 from wedgesweep.readers.extras import module
 from wedgesweep.readers.table import Channel, Wanted
@@ -19,14 +21,16 @@ def _hdf5(h5py: Any, file: Path, wanted: Wanted) -> dict[str, Channel | None]:
         names: list[str] = []
         opened.visititems(lambda name, each: names.append(name) if isinstance(each, h5py.Dataset) else None)
         return {
-            name: Channel(opened[name][()], _text(opened[name].attrs)) if wanted(name, number) else None
+            name: _channel(opened[name]) if wanted(name, number) else None
             for number, name in enumerate(names, 1)
         }
 
 
-def _text(attributes: Any) -> str:
-    unit = attributes.get("units", attributes.get("unit", ""))
-    return unit.decode("utf-8", "replace") if isinstance(unit, bytes) else str(unit)
+def _channel(stored: Any) -> Channel:
+    """A dataset; MATLAB writes the dimensions of its arrays in reverse."""
+    unit = stored.attrs.get("units", stored.attrs.get("unit", ""))
+    unit = unit.decode("utf-8", "replace") if isinstance(unit, bytes) else str(unit)
+    return Channel(np.transpose(stored[()]) if "MATLAB_class" in stored.attrs else stored[()], unit)
 
 
 def netcdf(file: Path, wanted: Wanted) -> dict[str, Channel | None]:

@@ -13,7 +13,7 @@ from wedgesweep.files import read_bytes, regular
 from wedgesweep.readers import dialect as csv_dialect
 from wedgesweep.readers import text
 from wedgesweep.readers.dialect import Dialect, bare
-from wedgesweep.readers.table import Channel, Name, ReadError, Wanted, channel_of
+from wedgesweep.readers.table import Channel, Name, ReadError, Wanted, channel_of, matrix_of
 from wedgesweep.units import is_unit
 
 Stated = Mapping[str, str]
@@ -83,7 +83,7 @@ def survey(path: Path) -> Survey:
 
 def _variables(name: str, raw: Channel) -> list[Column]:
     """A variable as a column, or the columns of a matrix."""
-    values = np.asarray(raw.values)
+    values = matrix_of(np.asarray(raw.values))
     matrix = values.ndim == 2 and 1 < values.shape[1] <= min(WIDEST, values.shape[0])
     parts: list[tuple[str, Any]] = [(name, raw.values)]
     if matrix:

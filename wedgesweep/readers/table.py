@@ -174,7 +174,16 @@ def _picked(name: Name, variables: Mapping[str, Channel | None]) -> Channel:
         raise ValueError(message) from error
 
 
-def _column(matrix: np.ndarray, number: int) -> np.ndarray:
+def matrix_of(values: np.ndarray) -> np.ndarray:
+    """A matrix with a row for each sample; Simulink logs k signals as k x 1 x n."""
+    if values.ndim < 3 or values.squeeze().ndim != 2:
+        return values
+    rows, columns = values.squeeze().shape
+    return values.squeeze() if rows >= columns else values.squeeze().T
+
+
+def _column(values: np.ndarray, number: int) -> np.ndarray:
+    matrix = matrix_of(values)
     if matrix.ndim != 2 or not 1 <= number <= matrix.shape[1]:
         fault = f"holds {' x '.join(map(str, matrix.shape))} numbers, and no column {number}"
         raise ValueError(fault)
