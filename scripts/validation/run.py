@@ -11,7 +11,7 @@ from pathlib import Path
 from shutil import rmtree
 from typing import Any
 
-from validation import time_records, unmodelled_data
+from validation import time_records, unmodelled_data, worse
 from validation.baselines import BASELINES
 from validation.draft import Draft
 from validation.hiding import draw
@@ -29,6 +29,8 @@ from wedgesweep.sweep.provenance import git_commit
 KEPT = ("law", "column_angle_deg", "noise", "spread", "uncertain", "expected", "record_input", "size")
 COMPARED = ("clean", "strong", "weak", "pair", "unknown", "poor", "added")
 RECORD, DRAFT, TRUTH = "record.json", "draft.json", "truth.json"
+# Attempts at a draw end before this one.
+WORSENED = 1000
 DATA, RESULT = "data", "diagnosis"
 # Relative std with which the amplitude of a recommended test is known.
 ADDED_SPREAD = 0.01
@@ -135,8 +137,12 @@ def _run_time_records(one: DataSet, directory: Path) -> Record:
     noise = ["--noise", drawn["noise"], "--level", drawn["level"], "--input-level", 0.5 * drawn["level"]]
     more = ["--sampling-hz", drawn["sampling_hz"], "--seed", one.noise_seed, "--n-jobs", 1]
     wedgesweep("synthesize", *files, *noise, *more, "--settle-periods", SETTLE_PERIODS)
-    found = _diagnose(one, directory, clock)
     made = {key: drawn[key] for key in ("law", "noise", "level")}
+    if one.kind == time_records.WORSE:
+        way, size = worse.of(one.index)
+        worse.worsen(directory / DATA, way, size, one.random(WORSENED))
+        made |= {"way": way, "size": size}
+    found = _diagnose(one, directory, clock)
     record = _record(one, sorted(drawn["hidden"]), drawn["hidden"], made, found, None)
     return record | {"baselines": {}, "seconds": clock.seconds}
 

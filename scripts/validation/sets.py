@@ -33,6 +33,7 @@ ALL = {
     "transient": Kind(40),  # one effect, or none, in releases and a sweep; see time_records.py
     "loop": Kind(40),  # the same in hysteresis loops
     "mixed": Kind(20),  # the same in steady tests, releases and a loop together
+    "worse": Kind(180),  # any of these three, made worse as recorders do; see worse.py
 }
 KINDS = tuple(ALL)
 

@@ -191,7 +191,8 @@ def _right(record: Record) -> bool:
 
 
 def _line(record: Record) -> str:
-    made = f"{record['name']:12} {record['law']:15} {record['noise']:15} excess {judge.excess(record):9.0f}"
+    how = f"{record['way']} {record['size']:g}" if "way" in record else record["noise"]
+    made = f"{record['name']:12} {record['law']:15} {how:15} excess {judge.excess(record):9.0f}"
     rivals = "; ".join("+".join(rival["effects"]) for rival in record["rivals"][:3])
     tied = f" (rivals {rivals})" if rivals else ""
     return f"{made}  {outcome(record)}{tied}"

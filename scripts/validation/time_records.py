@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from validation import ranges, rigs
+from validation import ranges, rigs, worse
 from validation.rigs import Rig
 from validation.sets import DataSet
 from validation.strength import reach
@@ -25,7 +25,7 @@ from wedgesweep.synthesize.options import NOISES
 from wedgesweep.synthesize.plan import PlannedTest
 from wedgesweep.synthesize.transients import transient
 
-TRANSIENT, LOOP, MIXED = TIME_KINDS = ("transient", "loop", "mixed")
+TRANSIENT, LOOP, MIXED, WORSE = TIME_KINDS = ("transient", "loop", "mixed", "worse")
 LAWS = ("coulomb", "static-dynamic")
 # Effects of a sine as an input, and those that a loop cannot show.
 OF_A_SINE = ("input_distortion", "stray_vibration", "fixture_resonance", "cross_slip")
@@ -86,12 +86,13 @@ def _drawn(one: DataSet, attempt: int) -> dict[str, Any] | None:
     random = one.random(attempt)
     law = LAWS[one.index % len(LAWS)]
     drawn = _suspension(random) if one.index // 2 % 2 else _oscillator(random)
-    rig, tests = drawn.rig, TESTS[one.kind](drawn)
+    kind = tuple(TESTS)[one.index // len(worse.WAYS) % len(TESTS)] if one.kind == WORSE else one.kind
+    rig, tests = drawn.rig, TESTS[kind](drawn)
     planned = plan.from_document({"test": tests}).tests
     sampling_hz = round(SAMPLED * drawn.frequency, 3)
     hidden: dict[str, dict[str, float]] = {}
     if one.index % CLEAN_EACH != CLEAN_EACH - 1:
-        left_out = NOT_IN_LOOPS if one.kind == LOOP else OF_A_SINE
+        left_out = NOT_IN_LOOPS if kind == LOOP else OF_A_SINE
         known = set(rig.possible_effects).intersection(ranges.LEADING).difference(left_out)
         possible = [name for name in EFFECTS if name in known]
         order = np.random.default_rng([one.seed, 101]).permutation(len(possible))
