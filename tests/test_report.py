@@ -12,7 +12,7 @@ from wedgesweep import diagnosis_result, formatting, report, rotation
 from wedgesweep.diagnosis_result import VERDICTS
 from wedgesweep.effects import EFFECTS
 from wedgesweep.errors import InputError, SweepError
-from wedgesweep.report import html, phrases, summary
+from wedgesweep.report import html, ladder, phrases, summary
 from wedgesweep.report.inline_figures import InlineFigures
 
 # The verdict whose page has its figures; test_figures_diagnosis.py draws those of all verdicts.
@@ -183,6 +183,20 @@ def test_the_page_begins_with_what_is_missing_in_plain_words(written):
     nearly = result.document["ladder"][1]
     row = f"explains all tests to {plain(phrases.accuracy(nearly['accuracy']))} "
     assert (row in page.text) == (verdict == "none-of-mine")
+
+
+def test_effects_beyond_two_are_listed_with_their_gain(tmp_path):
+    fixture_diagnosis.write(tmp_path, "none-of-mine")
+    result = diagnosis_result.read(tmp_path)
+    levels = result.document["ladder"]
+    further = {"effects": ["guide_friction", "quadratic_drag", "backlash"], "accuracy": 0.02, "rivals": []}
+    levels += [{**levels[-1], "effects": ["guide_friction", "quadratic_drag"]}][: 3 - len(levels)]
+    told = plain(ladder.section(result, lambda *_: ""))
+    assert "one at a time" not in told
+    levels.append({**further, "accuracy_held_out": 0.03})
+    told = plain(ladder.section(result, lambda *_: ""))
+    assert "one at a time, as long as tests left out gain: backlash (held-out tests: 3 %)" in told
+    assert "never named" in told
 
 
 @pytest.mark.parametrize("verdict", VERDICTS)

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 
-from wedgesweep.diagnose import score_test, verdict, work
+from wedgesweep.diagnose import forward, score_test, verdict, work
 from wedgesweep.diagnose.calibration import calibrate
 from wedgesweep.diagnose.changes import Best, Change
 from wedgesweep.diagnose.concatenation import joined
@@ -39,6 +39,8 @@ log = logging.getLogger(__name__)
 COMPARED = 6
 # Explanations are close if their penalised chi-squared is within so many times the gap of a tie of the best.
 FOLLOWED_GAPS = 5.0
+# Verdicts after which more is tried than names.
+ABSTAINING = (verdict.NONE, verdict.INSUFFICIENT)
 # How the tests of each kind become data of a fit.
 DATA: dict[str, Callable[[Measurement], FitData]] = {
     STEADY: harmonic_data,
@@ -295,9 +297,17 @@ def _with_leading_effect(search: Search, found: Diagnosis, predict: Predictor) -
     return replace(found, decided=decided, explanations=known, gain=gain)
 
 
+def _with_more_effects(course: Course) -> Diagnosis:
+    found = course.found
+    if found.finding.verdict not in ABSTAINING or len(found.ladder) < forward.LEVELS:
+        return found
+    levels = forward.forward_selection(course.search, found.explanations, found.ladder, course.predict)
+    return replace(found, ladder=levels)
+
+
 def _with_empirical_force(course: Course) -> Diagnosis:
     found = course.found
-    if found.finding.verdict not in (verdict.NONE, verdict.INSUFFICIENT) and not course.empirical_force:
+    if found.finding.verdict not in ABSTAINING and not course.empirical_force:
         return found
     force = empirical_force(found.base.fit, found.ladder, course.search.each)
     return replace(found, empirical=force)
@@ -415,6 +425,7 @@ STEPS: dict[str, Callable[[Course], Diagnosis]] = {
     "intervals": _with_intervals,
     "held-out tests": _held_out,
     "accuracy": _rated,
+    forward.NAME: _with_more_effects,
     "empirical force": _with_empirical_force,
     "scores": _scored,
     "next test": _with_next_test,

@@ -1,4 +1,4 @@
-"""The accuracy ladder: how well the tests are explained by no effect, by one, and by two."""
+"""The accuracy ladder: how well the tests are explained by no effect, by one, by two, by more."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -63,7 +63,7 @@ class Level:
 def rough_ladder(search: Search, base: Explanation, explanations: Sequence[Explanation]) -> tuple[Level, ...]:
     """Rate the base model and every eligible explanation where its fit ended, without simulations."""
     allowed = [base, *filter(verdict.eligible, explanations)]
-    rated = sorted(search.each(_rated_where_it_ended, allowed), key=_by_accuracy)
+    rated = sorted(search.each(rated_where_it_ended, allowed), key=_by_accuracy)
     sizes = sorted({len(each.effects) for each in rated})
     return tuple(Level(tuple(each for each in rated if len(each.effects) == size)) for size in sizes)
 
@@ -76,15 +76,16 @@ def ladder(
     The best one of each level also predicts tests that are left out of its fit.
     """
     rough = rough_ladder(search, base, explanations)
-    return tuple(_refined_level(search, level.rated, predict) for level in rough)
+    return tuple(level_of(search, level.rated, predict) for level in rough)
 
 
-def _rated_where_it_ended(each: Explanation) -> Rated:
+def rated_where_it_ended(each: Explanation) -> Rated:
+    """An explanation with the accuracy of its fit as it is."""
     fit = each.fit
     return Rated(each, accuracy.of_response(fit.model.data, fit.evaluation, fit.dof), fit)
 
 
-def _refined_level(search: Search, rough: Sequence[Rated], predict: Predictor) -> Level:
+def level_of(search: Search, rough: Sequence[Rated], predict: Predictor) -> Level:
     """The explanations of one size, best first.
 
     The leading ones are refined; so is any other that would rank among the COMPARED best without it.

@@ -1,4 +1,4 @@
-"""The accuracy ladder: how well no effect, one and two explain the tests, as shares of the response."""
+"""The accuracy ladder: how well no effect, one, two and more explain the tests, as shares of the response."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -21,8 +21,8 @@ READING = (
 
 
 CAPTION = (
-    "Filled marks are the best explanations with no effect, one and two, open ones their rivals. Further "
-    "left is better; below the noise floor differences are not resolved."
+    "Filled marks are the best explanations with no effect, one, two and more, open ones their rivals. "
+    "Further left is better; below the noise floor differences are not resolved."
 )
 
 
@@ -39,8 +39,18 @@ def section(result: DiagnosisResult, draw: InlineFigures) -> Markup:
         html.paragraph(" ".join([*(f"{one[0].upper()}{one[1:]}." for one in clauses(result)), READING])),
         draw("ladder", CAPTION),
         html.table("The most accurate explanations", HEAD, rows, 2),
+        _added(levels[3:]),
         html.paragraph(f"Noise floor: {phrases.accuracy(floor)}.") if floor else Markup(),
     )
+
+
+def _added(further: Sequence[Mapping[str, Any]]) -> Markup:
+    """Effects beyond two, with what each gains on tests left out."""
+    if not further:
+        return Markup()
+    steps = [f"{level['effects'][-1]} ({held_out(level)})" for level in further]
+    said = f"Added to the best pair one at a time, as long as tests left out gain: {', then '.join(steps)}."
+    return html.paragraph(f"{said} More than two effects are never named.")
 
 
 def _row(level: Mapping[str, Any]) -> list[str]:

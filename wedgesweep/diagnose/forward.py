@@ -1,0 +1,76 @@
+"""Forward selection: effects are added to the best pair one at a time, as long as predictions gain.
+
+On a damper rig several causes at once are the rule. Where neither one effect nor two explain the tests, the
+effects that are added next, with the gain of each, say what the model lacks; they are no name. Tests that are
+left out of the fits are the judge, as each further effect fits the others better.
+"""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from wedgesweep.diagnose.cross_validation import Predictor
+from wedgesweep.diagnose.explanation import Explanation
+from wedgesweep.diagnose.ladder import Level, Rated, level_of, rated_where_it_ended
+from wedgesweep.diagnose.least_squares import minimise
+from wedgesweep.diagnose.model import Fit
+from wedgesweep.diagnose.search import Search
+from wedgesweep.effects import go_together
+
+NAME = "forward selection"
+# An effect is added if it lowers the error on tests left out by this share.
+GAINED = 0.1
+# Levels of a ladder with a base model, one effect and two.
+LEVELS = 3
+# Effects beside each other, at most: with more, none of a rig's few tests would be left to judge them.
+MOST = 5
+# Iterations of the first fit of each candidate, and candidates that are followed to the end.
+BRIEF, FOLLOWED = 5, 3
+# Work that may be spent, over that of the whole search.
+SHARE = 1.0 / 6.0
+
+
+def forward_selection(
+    search: Search, explanations: Sequence[Explanation], levels: Sequence[Level], predict: Predictor
+) -> tuple[Level, ...]:
+    """The levels of the ladder, and one more for each effect that is added to its best pair."""
+    singles = {each.effects[0]: each.fit for each in explanations if len(each.effects) == 1}
+    found = list(levels)
+    search.budget.grant(SHARE * search.budget.total)
+    while len(found[-1].best.effects) < MOST and _gained(*found[-2:]):
+        rated = _with_one_more(search, found[-1].best, singles)
+        if not rated:
+            break
+        found.append(level_of(search, rated, predict))
+    return tuple(found if len(found) == len(levels) or _gained(*found[-2:]) else found[:-1])
+
+
+def _gained(before: Level, after: Level) -> bool:
+    """Whether a level predicts tests left out clearly better than the one with an effect less."""
+    was, now = before.best.held_out, after.best.held_out
+    return was is not None and now is not None and now < (1.0 - GAINED) * was
+
+
+def _with_one_more(search: Search, best: Rated, singles: Mapping[str, Fit]) -> list[Rated]:
+    """The best explanation with each other effect that can go with it; only the leading ones, best first."""
+    others = [each for each in singles if each not in best.effects and go_together((*best.effects, each))]
+    begun = search.each_affordable(
+        lambda effect: _begun(search, best, singles[effect]), others, NAME, lambda e: (*best.effects, e)
+    )
+    leading = sorted(begun, key=lambda fit: fit.chi2)[:FOLLOWED]
+    found = search.each(lambda fit: rated_where_it_ended(search.explanation(fit)), leading)
+    return sorted(found, key=lambda each: each.accuracy)
+
+
+def _begun(search: Search, best: Rated, single: Fit) -> Fit:
+    """A fit under the model error of the best explanation, with one effect more.
+
+    That starts as it was fitted by itself, or so weak that it changes nothing.
+    """
+    fit = best.fit
+    model = search.model(*fit.effects, *single.effects)
+    model = model.on(fit.model.data.with_model_error(best.accuracy))
+    alone, hypothesis = single.x[: single.model.size], single.model.hypothesis
+    starts = [np.r_[fit.x[: fit.model.size], x] for x in (alone, hypothesis.near_neutral(alone))]
+    evaluations = model.evaluate_all([model.start(fit, x) for x in starts])
+    return minimise(model, min(evaluations, key=lambda each: each.chi2), BRIEF)
