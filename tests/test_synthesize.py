@@ -9,7 +9,7 @@ import pytest
 from tests.command import invoke
 from tests.fixture_measured import MEASURED, lines, write
 from wedgesweep import config, measured
-from wedgesweep.measured.noise_estimate import estimate_noise
+from wedgesweep.measured.cycles import estimate_noise
 from wedgesweep.solvers import event_driven
 from wedgesweep.solvers.trajectory import Window
 from wedgesweep.synthesize.motion import Clock, steady

@@ -17,7 +17,7 @@ from wedgesweep.diagnose.steady.from_measurement import harmonic_data
 from wedgesweep.diagnose.steady.harmonic_data import stated
 from wedgesweep.diagnose.steady.recorded_input import without_noise
 from wedgesweep.measured.measurement import Measurement, TestRecord
-from wedgesweep.measured.overrides import with_numbers
+from wedgesweep.measured.model import with_numbers
 from wedgesweep.solvers.periodic import at_rest
 
 LAW = "static-dynamic"

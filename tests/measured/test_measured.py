@@ -12,8 +12,8 @@ from wedgesweep import config, measured
 from wedgesweep.diagnose.steady.from_measurement import harmonic_data
 from wedgesweep.kinds import is_measured
 from wedgesweep.measured.channels import model_faults
+from wedgesweep.measured.cycles import estimate_noise
 from wedgesweep.measured.declarations import PARAMETERS
-from wedgesweep.measured.noise_estimate import estimate_noise
 
 
 @pytest.fixture

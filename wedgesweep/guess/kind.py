@@ -6,9 +6,9 @@ from itertools import pairwise
 
 import numpy as np
 
+from wedgesweep.measured.cycles import estimate_noise
 from wedgesweep.measured.declarations import LOOP, STEADY, TRANSIENT
 from wedgesweep.measured.frequency import FEWEST_CYCLES, estimate_frequency
-from wedgesweep.measured.noise_estimate import estimate_noise
 from wedgesweep.measured.stationarity import MOST_LEVEL_RATIO, MOST_MOVED, stationarity
 
 # What does not repeat, over what does, in a steady record; samples that tell it.

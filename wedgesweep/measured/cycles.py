@@ -1,4 +1,4 @@
-"""Harmonics of each cycle of a record."""
+"""Harmonics of each cycle of a record, and its noise: the part that is not periodic."""
 
 from dataclasses import dataclass
 from math import pi
@@ -6,6 +6,8 @@ from math import pi
 import numpy as np
 
 FIRST_HARMONICS = np.arange(1, 13)
+# Those that are no noise.
+PERIODIC = np.arange(1, 41)
 # A harmonic is detected if its squared mean exceeds this many times the variance of the mean.
 SEEN = 15.0
 
@@ -62,3 +64,29 @@ def slope_of_means(time: np.ndarray, signal: np.ndarray, frequency: float) -> fl
     cycles = cut(time, signal, frequency, FIRST_HARMONICS)
     about = cycles.times - cycles.times.mean()
     return float(about @ cycles.means / (about @ about))
+
+
+@dataclass(frozen=True, eq=False)
+class NoiseEstimate:
+    """The part of a channel that is not periodic.
+
+    ``std`` is in the channel's unit, ``share`` is relative to the rms of the periodic part; ``residual`` (n,)
+    is the channel without its periodic part and its mean.
+    """
+
+    std: float
+    share: float
+    residual: np.ndarray
+
+
+def estimate_noise(time: np.ndarray, signal: np.ndarray, frequency: float) -> NoiseEstimate:
+    """Estimate the noise of a channel, shape (n,), that vibrates at a frequency (Hz)."""
+    cycles = cut(time, signal, frequency, PERIODIC)
+    mean = cycles.harmonics.mean(axis=0)
+    repeated = np.zeros(time.size)
+    phase = cycles.omega * (time - cycles.middle)
+    for order, harmonic in zip(cycles.orders.tolist(), mean, strict=True):
+        repeated += (harmonic * np.exp(1j * order * phase)).real
+    left = signal - signal.mean() - (repeated - repeated.mean())
+    std = float(np.sqrt(left @ left / (time.size - 2 * mean.size - 1)))
+    return NoiseEstimate(std, std / float(repeated.std()), left)

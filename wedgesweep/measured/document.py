@@ -9,14 +9,14 @@ from typing import Any
 from wedgesweep import rotation, toml
 from wedgesweep.config import Config
 from wedgesweep.config.turned import Turned
-from wedgesweep.errors import InputError
+from wedgesweep.errors import ConfigError, InputError
 from wedgesweep.files import missing
 from wedgesweep.hints import shortened
-from wedgesweep.measured import channels, overrides, repeated
+from wedgesweep.measured import channels, kinds
 from wedgesweep.measured.build import build_record
 from wedgesweep.measured.declarations import DELAY_STD, INPUT, INPUT_STDS, ROOT, STEADY, UNCERTAIN, columns_of
 from wedgesweep.measured.measurement import MeasuredError, Measurement, TestRecord
-from wedgesweep.measured.model import load_model
+from wedgesweep.measured.model import load_model, with_numbers
 from wedgesweep.measured.signals import read_signals
 
 MODEL = "give the path of a config, from here"
@@ -87,7 +87,10 @@ def _override_faults(path: Path, measurement: dict[str, Any], config: Config) ->
     """Numbers of single tests that the model does not have, or that are out of range."""
     faults: list[str] = []
     for i, given in enumerate(measurement.get("test", ())):
-        faults += overrides.faults(config, given, f"{path}: measurement.test[{i}].model")
+        try:
+            with_numbers(config, given.get("model", {}), f"{path}: measurement.test[{i}].model")
+        except ConfigError as error:
+            faults += error.problems
     return faults
 
 
@@ -143,7 +146,7 @@ def _tests(
             problems.append(f"{at}.file: {fault}")
             continue
         number = f"#{len(earlier) + 1}" if earlier else ""
-        problems.extend(f"{at}.{fault}" for fault in repeated.faults(given, before))
+        problems.extend(f"{at}.{fault}" for fault in kinds.repeat_faults(given, before))
         before.append({**given, "name": f"{given['file']}{number}"})
         own = by_kind[given.get("kind", STEADY)]
         if given.get("undriven"):

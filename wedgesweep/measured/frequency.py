@@ -14,8 +14,7 @@ from math import inf, pi
 
 import numpy as np
 
-from wedgesweep.measured.cycles import FIRST_HARMONICS, SEEN, Cycles, cut
-from wedgesweep.measured.noise_estimate import estimate_noise
+from wedgesweep.measured.cycles import FIRST_HARMONICS, SEEN, Cycles, cut, estimate_noise
 from wedgesweep.periodogram import power_of
 
 # Fewer cycles give no estimate of the scatter.

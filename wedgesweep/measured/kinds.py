@@ -1,10 +1,11 @@
 """Checks of tests by their kind: which channels and keys they have, and what their records must show."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
+from wedgesweep.hints import show
 from wedgesweep.measured.declarations import INPUT, KNOWN_FORCE, LOOP, STEADY, TRANSIENT
 from wedgesweep.measured.measurement import TestRecord
 
@@ -54,6 +55,22 @@ def key_faults(given: Mapping[str, Any]) -> list[str]:
     wrong += [] if kind == TRANSIENT else [key for key in OF_A_TRANSIENT if given.get(key)]
     wrong += [key for key in NOT_OF_A_SINE if key in given] if kind == STEADY else []
     return [f'{key}: not for kind = "{kind}"; omit it' for key in wrong]
+
+
+def repeat_faults(given: Mapping[str, Any], before: Sequence[Mapping[str, Any]]) -> list[str]:
+    """Faults of ``repeat_of``, which names an earlier test that this one repeats, as "key: fault".
+
+    ``given``: keys of a test; ``before``: those of the tests before it, and their names: file, file#2.
+    """
+    first = given.get("repeat_of")
+    if first is None:
+        return []
+    for other in before:
+        if other.get("name") == first and "repeat_of" not in other:
+            same = other.get("kind", STEADY) == given.get("kind", STEADY)
+            return [] if same else [f"repeat_of: {show(first)} is of another kind; a repeat is of the same"]
+    fault = "is not the file of an earlier test that repeats none; name that one"
+    return [f"repeat_of: {show(first)} {fault}"]
 
 
 def loop_faults(test: TestRecord, file: str, at: str) -> list[str]:

@@ -12,7 +12,7 @@ from wedgesweep.effects import channel_delay
 from wedgesweep.errors import InputError
 from wedgesweep.measured.declarations import MIXED, columns_of
 from wedgesweep.measured.frequency import refined_frequency
-from wedgesweep.measured.overrides import with_numbers
+from wedgesweep.measured.model import with_numbers
 
 
 class MeasuredError(InputError):

@@ -3,12 +3,11 @@
 import numpy as np
 from scipy.special import stdtrit
 
-from wedgesweep.measured.cycles import Cycles, cut
+from wedgesweep.measured.cycles import Cycles, NoiseEstimate, cut, estimate_noise
 from wedgesweep.measured.declarations import LOOP, STEADY
 from wedgesweep.measured.frequency import IMPROBABLE, stands_out
 from wedgesweep.measured.kinds import goes_one_way
 from wedgesweep.measured.measurement import TestRecord
-from wedgesweep.measured.noise_estimate import NoiseEstimate, estimate_noise
 from wedgesweep.measured.stationarity import MEND, remedy
 
 # Changes over the record that are worth a warning: of the amplitude, relative; of the mean, over the rms. A

@@ -4,9 +4,9 @@ from math import isnan
 
 from wedgesweep.formatting import counted
 from wedgesweep.measured import frequency
+from wedgesweep.measured.cycles import NoiseEstimate, estimate_noise
 from wedgesweep.measured.frequency import FrequencyEstimate
 from wedgesweep.measured.measurement import TestRecord
-from wedgesweep.measured.noise_estimate import NoiseEstimate, estimate_noise
 from wedgesweep.measured.phase_step import find_step
 
 FEWEST_PERIODS = 4

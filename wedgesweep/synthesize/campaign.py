@@ -21,7 +21,7 @@ from wedgesweep.sweep.backend import in_order
 from wedgesweep.sweep.cases import compile_once
 from wedgesweep.synthesize import documents, files, noise, other_tables
 from wedgesweep.synthesize.files import Table
-from wedgesweep.synthesize.motion import Motion, NoMotion, steady
+from wedgesweep.synthesize.motion import Motion, NoMotion, sines, steady
 from wedgesweep.synthesize.options import FORCE, QUANTITIES, Options
 from wedgesweep.synthesize.plan import Plan
 from wedgesweep.synthesize.truth import STRAY, TrueTest, Truth, draw
@@ -219,9 +219,4 @@ def _recorded(record: np.ndarray, time: np.ndarray, quantity: str) -> np.ndarray
     if stray["acceleration"] != 0.0:
         tone = 2.0 * pi * stray["frequency"]
         waves.append((-stray["acceleration"] / tone**2, tone, stray["phase"]))
-    order = 0 if quantity == FORCE else QUANTITIES.index(quantity)
-    # Each derivative multiplies by the frequency and advances the phase by a quarter of a turn.
-    parts = [
-        size * rate**order * np.sin(rate * time + phase + 0.5 * pi * order) for size, rate, phase in waves
-    ]
-    return np.sum(parts, axis=0)
+    return sines(waves, time, 0 if quantity == FORCE else QUANTITIES.index(quantity))

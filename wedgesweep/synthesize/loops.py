@@ -7,7 +7,7 @@ import numpy as np
 
 from wedgesweep.config import Config
 from wedgesweep.solvers import imposed_motion
-from wedgesweep.synthesize.motion import NoMotion
+from wedgesweep.synthesize.motion import NoMotion, sines
 from wedgesweep.synthesize.plan import PlannedTest
 
 # Steps of the motion for each sample, over which force and displacement are averaged.
@@ -34,7 +34,9 @@ def loop(
     count, step = round(test.duration_s * sampling_hz), 1.0 / sampling_hz / CELLS
     time = step * (np.arange(count * CELLS) + 0.5)
     record = config.record_with(effects, law, 0.0)
-    motion = np.array([_derivative(test, time, order) for order in range(3)])
+    size, rate = 1e-3 * test.amplitude, 2.0 * pi * test.frequency_hz
+    waves = (size, rate, 0.0), (SECOND_AMPLITUDE * size, SECOND_FREQUENCY * rate, SECOND_PHASE)
+    motion = np.array([sines(waves, time, order) for order in range(3)])
     sign = 1.0 if config.system == "oscillator" else -1.0
     force = imposed_motion.forces(record, sign * motion[0], sign * motion[1], sign * motion[2], step)[0]
     if np.isnan(force).any():
@@ -44,10 +46,3 @@ def loop(
         raise NoMotion(message)
     displacement, mean = (each.reshape(count, CELLS).mean(axis=1) for each in (motion[0], force))
     return displacement, mean
-
-
-def _derivative(test: PlannedTest, time: np.ndarray, order: int) -> np.ndarray:
-    """A derivative of the imposed motion (SI) at some times (s)."""
-    size, rate = 1e-3 * test.amplitude, 2.0 * pi * test.frequency_hz
-    parts = ((size, rate, 0.0), (SECOND_AMPLITUDE * size, SECOND_FREQUENCY * rate, SECOND_PHASE))
-    return np.sum([a * w**order * np.sin(w * time + p + 0.5 * pi * order) for a, w, p in parts], axis=0)

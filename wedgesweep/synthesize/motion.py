@@ -4,7 +4,7 @@ Radau alone makes the data. The event-driven solver, which is much faster, only 
 once Radau's own motion repeats, one period of it is a whole record.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from math import ceil, exp, pi
 
@@ -119,6 +119,17 @@ def _steady_state(record: np.ndarray) -> Sequence[float]:
     if found.outcome[0] != periodic.OK or found.warm.period[0] != 1:
         return (0.0, 0.0)
     return found.warm.state[0, : len(scales(compact(record))[0])].tolist()
+
+
+def sines(waves: Iterable[tuple[float, float, float]], time: np.ndarray, order: int) -> np.ndarray:
+    """A derivative, at times (n,) in s, of a sum of sines: amplitude, angular frequency (rad/s) and phase.
+
+    Each derivative multiplies by the frequency and advances the phase by a quarter of a turn.
+    """
+    parts = [
+        size * rate**order * np.sin(rate * time + phase + 0.5 * pi * order) for size, rate, phase in waves
+    ]
+    return np.sum(parts, axis=0)
 
 
 def lag_steps(step: float, period: float, lag: float) -> int:
