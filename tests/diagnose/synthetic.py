@@ -95,7 +95,7 @@ def next_to_breakaway() -> HarmonicData:
 
 def searched(data, *effects):
     """Search, base model and the best single fit of each effect."""
-    search, base = base_fit(Search.of(data, effects))
+    search, base, *_ = base_fit(Search.of(data, effects))
     return search, base, [single_fit(search, effect, base.fit).explanation for effect in effects]
 
 

@@ -77,7 +77,7 @@ def test_a_number_at_an_end_of_what_is_possible_is_not_followed():
 def test_an_effect_that_explains_next_to_nothing_is_not_followed():
     """Where it is absent, as an ever stiffer column, its simulations take longest."""
     search = Search.of(friction_of(2.6), ("friction_level",))
-    _, base = base_fit(search)
+    _, base, *_ = base_fit(search)
     model = search.model("friction_level")
     fit = minimise(model, model.evaluate(model.start(base.fit, np.array([2.0]))))
     assert effects_at_range_end(fit) == ("friction_level",)

@@ -41,7 +41,7 @@ def alone(effect):
     """A search that tries one effect."""
 
     def explain(search):
-        search, base = base_fit(search)
+        search, base, *_ = base_fit(search)
         return base, [single_fit(search, effect, base.fit).explanation]
 
     return explain

@@ -75,7 +75,7 @@ def test_a_bench_whose_joints_hold_misses_nothing_though_they_pull():
 
 def test_tests_in_which_nothing_lifts_off_cannot_show_it():
     data = measured("coulomb", {NAME: {"restitution": 0.3}}, QUIET)
-    search, base = base_fit(Search.of(data, (NAME,)))
+    search, base, *_ = base_fit(Search.of(data, (NAME,)))
     (score,) = score_test.scores(search, base.fit, {})
     assert not score.testable
     assert verdict.decide(base, [], verdict.DEFAULT).verdict == verdict.NOTHING

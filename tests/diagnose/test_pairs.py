@@ -16,8 +16,7 @@ CANDIDATES = (*TRUTH, "bolster_mass")
 
 def test_an_effect_that_shows_only_beside_another_is_tried_beside_all(monkeypatch):
     monkeypatch.setattr(pairs, "LEADING", 1)
-    search, base = base_fit(Search.of(drawn(TRUTH), CANDIDATES))
-    search, singles, scans = single_fits(search, base.fit)
+    search, base, singles, scans = single_fits(base_fit(Search.of(drawn(TRUTH), CANDIDATES)))
     assert min(singles, key=lambda each: each.fit.chi2).effects == ("bolster_mass",)
     best = pairs.fit_pairs(search, base.fit, singles, scans)[0]
     assert set(best.effects) == set(TRUTH)
@@ -26,7 +25,7 @@ def test_an_effect_that_shows_only_beside_another_is_tried_beside_all(monkeypatc
 
 def test_where_responses_do_not_add_the_second_effect_begins_with_nothing():
     """By every start of the damper that was tried a test sticks."""
-    search, base = base_fit(Search.of(next_to_breakaway(), ("stribeck", "viscous_damping")))
+    search, base, *_ = base_fit(Search.of(next_to_breakaway(), ("stribeck", "viscous_damping")))
     damper, stribecks = (single_fit(search, effect, base.fit) for effect in ("viscous_damping", "stribeck"))
     model = search.model("stribeck")
     stribeck = minimise(model, model.evaluate(model.start(base.fit, np.array([6e-3, -0.43]))), 3)

@@ -64,7 +64,7 @@ def test_what_a_fit_leaves_is_out_of_the_reach_of_all_that_was_fitted():
     off = 0.03 * np.array([1.0, -1.0, 1.0, 1.0, -1.0, 1.0])
     data = drawn({"friction_level": {"scale": 1.1}}, uncertain={"wedge_stiffness": 0.05}, off=off)
     _, _, (single,) = searched(data, "friction_level")
-    pulls = (single.fit.evaluation.prior**2).sum()
+    pulls = (single.fit.evaluation.nuisance_prior**2).sum()
     assert pulls > 5.0
     assert (Projector(single.fit).misfit ** 2).sum() == pytest.approx(single.fit.chi2, abs=0.02 * pulls)
 

@@ -25,7 +25,7 @@ FADING = {
 
 
 def scored(effects=None):
-    search, base = base_fit(Search.of(drawn(effects), EFFECTS))
+    search, base, *_ = base_fit(Search.of(drawn(effects), EFFECTS))
     return {each.effect: each for each in score_test.scores(search, base.fit, {})}
 
 

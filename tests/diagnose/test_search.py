@@ -10,6 +10,7 @@ from tests.diagnose.synthetic import MODEL, base_of, drawn, searched
 from wedgesweep.diagnose import stages
 from wedgesweep.diagnose.least_squares import minimise
 from wedgesweep.diagnose.search import (
+    Explained,
     Search,
     base_fit,
     beside_stated,
@@ -51,7 +52,7 @@ def test_an_effect_is_fitted_beside_what_is_stated_where_the_base_model_needs_ot
     """Springs, mass and friction go as far as they may to make up for friction that falls with velocity."""
     stds = {"bolster_stiffness": 0.01, "wedge_stiffness": 0.01, "bolster_mass": 0.005, "friction_level": 0.03}
     hidden = {"stribeck": {"peak": 0.0578, "velocity": 36.4e-3}}
-    search, base = base_fit(Search.of(clean(effects=hidden, uncertain=stds), ("stribeck",)))
+    search, base, *_ = base_fit(Search.of(clean(effects=hidden, uncertain=stds), ("stribeck",)))
     assert base.fit.implausible
     model = search.model("stribeck")
     started = model.evaluate_all([model.start(None, x) for x in model.hypothesis.starts()[::5]])
@@ -134,9 +135,9 @@ def test_the_base_model_goes_on_from_where_an_extension_got(monkeypatch):
     assert short.fit.p < 1e-9
     model = search.model("velocity_lag")
     there = model.evaluate(model.start(base_fit(search).base.fit, model.hypothesis.low))
-    again = refit_base(search, short, [search.explanation(minimise(model, there))]).base
+    again = refit_base(Explained(search, short, [search.explanation(minimise(model, there))], {})).base
     assert again.fit.p > 1e-3
-    assert refit_base(search, again, [short]).base is again
+    assert refit_base(Explained(search, again, [short], {})).base is again
 
 
 def test_an_effect_fits_no_worse_than_a_special_case_of_it():

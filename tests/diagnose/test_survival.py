@@ -12,7 +12,7 @@ import pytest
 
 from tests.command import invoke
 from wedgesweep import api, diagnosis_result, measured, report
-from wedgesweep.diagnose import diagnosis, stages, work
+from wedgesweep.diagnose import diagnosis, search, stages, work
 from wedgesweep.diagnose.result import result_of
 from wedgesweep.report.page import render
 
@@ -88,12 +88,12 @@ def test_the_report_shows_what_there_is(failed):
 
 
 def test_an_effect_whose_fit_fails_is_no_candidate(bench, monkeypatch):
-    fit = stages.single_fits.__globals__["single_fit"]
+    fit = search.single_fits.__globals__["single_fit"]
 
     def single_fit(search, effect, base):
         return raising(ArithmeticError("odd"))() if effect == "stribeck" else fit(search, effect, base)
 
-    monkeypatch.setitem(stages.single_fits.__globals__, "single_fit", single_fit)
+    monkeypatch.setitem(search.single_fits.__globals__, "single_fit", single_fit)
     monkeypatch.setattr(diagnosis, "taken", raising(KeyboardInterrupt))
     found = result_of(diagnosis.diagnose(bench, CANDIDATES))
     assert found.document["failed"] == [{"effect": "stribeck", "reason": "ArithmeticError: odd"}]
@@ -103,12 +103,12 @@ def test_an_effect_whose_fit_fails_is_no_candidate(bench, monkeypatch):
 
 @pytest.mark.parametrize("threads", [1, 2])
 def test_an_interrupt_ends_in_what_was_found(bench, monkeypatch, threads):
-    fit, begun = stages.single_fits.__globals__["single_fit"], itertools.count()
+    fit, begun = search.single_fits.__globals__["single_fit"], itertools.count()
 
     def single_fit(*given):
         return raising(KeyboardInterrupt)() if next(begun) else fit(*given)
 
-    monkeypatch.setitem(stages.single_fits.__globals__, "single_fit", single_fit)
+    monkeypatch.setitem(search.single_fits.__globals__, "single_fit", single_fit)
     found = result_of(diagnosis.diagnose(bench, CANDIDATES, threads))
     assert found.document["ended"] == {"by": "interrupt", "signal": signal.SIGINT}
     assert steps_of(found, "interrupted") == STEPS
@@ -118,7 +118,7 @@ def test_an_interrupt_ends_in_what_was_found(bench, monkeypatch, threads):
 
 
 def test_before_the_base_model_is_fitted_there_is_nothing_to_report(bench, monkeypatch):
-    monkeypatch.setattr(stages, "base_fit", raising(KeyboardInterrupt))
+    monkeypatch.setattr(diagnosis, "base_fit", raising(KeyboardInterrupt))
     with pytest.raises(KeyboardInterrupt):
         diagnosis.diagnose(bench, CANDIDATES)
 

@@ -64,7 +64,7 @@ def test_the_base_model_may_contain_the_vibration():
     table = f"[effects.stray_vibration]\nacceleration_m_per_s2 = {ACCELERATION}\nfrequency_hz = {TONE}\n"
     for seed, phase in enumerate(np.arange(6) * pi / 3.0):
         data = replace(recorded(np.full(3, phase), seed), model=config.parse(MODEL + table))
-        search, base = base_fit(Search.of(data, ("viscous_damping",)))
+        search, base, *_ = base_fit(Search.of(data, ("viscous_damping",)))
         assert base.fit.p > 1e-3
     (damping,) = scores(search, base.fit, {})
     assert damping.testable

@@ -158,8 +158,7 @@ def test_a_hidden_effect_is_found(tmp_path, effect):
 def test_a_start_that_one_explanation_has_found_is_tried_by_others(tmp_path):
     data = transient_data(read(write(tmp_path, effects={"viscous_damping": {"coefficient": 2.0}})))
     names = ("viscous_damping", "directional_damping")
-    search, base = base_fit(Search.of(data, names))
-    search, (damper, other), _ = single_fits(search, base.fit)
+    search, _, (damper, other), _ = single_fits(base_fit(Search.of(data, names)))
     model, nuisance = damper.fit.model, damper.fit.point.nuisance.copy()
     nuisance[0, 1] += 0.5
     astray = model.evaluate(replace(damper.fit.point, nuisance=nuisance))
@@ -173,8 +172,8 @@ def test_a_start_that_one_explanation_has_found_is_tried_by_others(tmp_path):
 @pytest.mark.acceptance
 def test_a_fit_that_is_far_off_waits_until_nothing_is_adequate(tmp_path):
     data = transient_data(read(write(tmp_path, effects={"viscous_damping": {"coefficient": 20.0}})))
-    search, base = base_fit(Search.of(data, ("viscous_damping", "cubic_stiffness")))
-    search, (damper, spring), _ = single_fits(search, base.fit)
+    known = base_fit(Search.of(data, ("viscous_damping", "cubic_stiffness")))
+    search, _, (damper, spring), _ = single_fits(known)
     assert far_off(spring.fit)
     assert not far_off(damper.fit)
     assert contenders(search, [spring, damper]) == [damper]

@@ -201,21 +201,18 @@ class Concatenation(FitData):
 
     def _evaluations(self, here: Evaluation) -> list[Evaluation]:
         """An evaluation as evaluations of the parts."""
-        found = []
-        for i, (point, rows) in enumerate(zip(self._points(here.point), self.layout.rows, strict=True)):
-            priors = self.layout.priors[i]
-            nuisance_prior = here.nuisance_prior[rows][:, self.layout.columns[i][:priors]]
-            found.append(
-                Evaluation(
-                    point,
-                    here.response.parts[i],
-                    here.residual[rows, : here.response.sizes[i]],
-                    np.r_[nuisance_prior.ravel(), here.uncertain_prior],
-                    here.found_tests[rows],
-                    priors,
-                )
+        own = zip(self._points(here.point), *here.response, *self.layout[1:3], self.layout.rows, strict=True)
+        return [
+            replace(
+                here,
+                point=point,
+                response=response,
+                residual=here.residual[rows, :size],
+                nuisance_prior=here.nuisance_prior[rows][:, columns[:priors]],
+                found_tests=here.found_tests[rows],
             )
-        return found
+            for point, response, size, columns, priors, rows in own
+        ]
 
     def _scenarios(self, scenarios: Sequence[Scenario]) -> list[list[Scenario]]:
         """The scenarios of each part."""

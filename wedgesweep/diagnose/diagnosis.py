@@ -22,8 +22,8 @@ from wedgesweep.diagnose.next_test.offer import NextTest
 from wedgesweep.diagnose.next_test.recommend import recommend
 from wedgesweep.diagnose.profile_likelihood import profile_likelihood
 from wedgesweep.diagnose.score_test import Score
-from wedgesweep.diagnose.search import OTHER_NUISANCES, Explained, Search, quiet
-from wedgesweep.diagnose.stages import PAIRS, REFINEMENT, base_model, explain, single_effects, taken
+from wedgesweep.diagnose.search import OTHER_NUISANCES, Explained, Search, base_fit, quiet, single_fits
+from wedgesweep.diagnose.stages import PAIRS, REFINEMENT, explain, taken
 from wedgesweep.diagnose.steady.from_measurement import harmonic_data
 from wedgesweep.diagnose.transient.from_measurement import transient_data
 from wedgesweep.diagnose.verdict import Finding, Thresholds
@@ -229,7 +229,7 @@ def diagnose(
     """
     force_wanted = effects is not None and FORCE in effects
     effects = _candidates(candidates() if effects is None else effects, measurement, progress)
-    explained = base_model(Search.of(data_of(measurement), effects, threads, progress))
+    explained = base_fit(Search.of(data_of(measurement), effects, threads, progress))
     left_out = {*explained.search.without, *(() if calibrated else ("calibration",))}
     steps = {name: step for name, step in STEPS.items() if name not in left_out}
     course = Course(measurement, explained, tuple(steps), reached)
@@ -418,7 +418,7 @@ def _undecided(finding: Finding, explanations: Sequence[Explanation], thresholds
 
 # Steps of a diagnosis after the fit of the base model, in their order; any of them may fail or be cut off.
 STEPS: dict[str, Callable[[Course], Diagnosis]] = {
-    "single effects": lambda course: course.explained_by(single_effects(course.explained)),
+    "single effects": lambda course: course.explained_by(single_fits(course.explained)),
     "refinement of single effects": lambda course: course.explained_by(taken(REFINEMENT, course.explained)),
     "pairs": lambda course: course.explained_by(taken(PAIRS, course.explained)),
     "calibration": _calibrated,

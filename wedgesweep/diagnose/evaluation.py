@@ -89,33 +89,22 @@ UNUSED = NuisanceParameter(step=0.0, max_step=0.0)
 class Evaluation:
     """A point with its simulation and its residuals.
 
-    ``residual`` (T, m) and ``found_tests`` (T,): see Comparison. ``prior`` (T P + u,): pulls on the priors
-    (distance from stated in standard deviations) of nuisance parameters, then of uncertain parameters.
-    ``priors_per_test``: P.
+    ``residual`` (T, m) and ``found_tests`` (T,): see Comparison. ``nuisance_prior`` (T, P) and
+    ``uncertain_prior`` (u,): pulls on the priors of nuisance and uncertain parameters (distance from stated
+    in standard deviations).
     """
 
     point: Point
     response: Any
     residual: np.ndarray
-    prior: np.ndarray
+    nuisance_prior: np.ndarray
+    uncertain_prior: np.ndarray
     found_tests: np.ndarray
-    priors_per_test: int
 
     @property
     def found(self) -> bool:
         """Whether all tests have a response."""
         return bool(self.found_tests.all())
-
-    @property
-    def nuisance_prior(self) -> np.ndarray:
-        """Pulls on the priors of nuisance parameters, (T, P)."""
-        tests = len(self.residual)
-        return self.prior[: tests * self.priors_per_test].reshape(tests, self.priors_per_test)
-
-    @property
-    def uncertain_prior(self) -> np.ndarray:
-        """Pulls on the priors of uncertain parameters, (u,)."""
-        return self.prior[len(self.residual) * self.priors_per_test :]
 
     @cached_property
     def chi2_by_test(self) -> np.ndarray:
@@ -125,7 +114,7 @@ class Evaluation:
     @cached_property
     def chi2(self) -> float:
         """Squared misfit of all tests, pulls on priors included; infinite if a response does not exist."""
-        return float((self.residual**2).sum() + (self.prior**2).sum()) if self.found else np.inf
+        return float(self.chi2_by_test.sum() + (self.uncertain_prior**2).sum()) if self.found else np.inf
 
 
 def best_evaluation_per_test(evaluations: Sequence[Evaluation]) -> np.ndarray:

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.special import chdtrc
 
 from wedgesweep.diagnose.changes import Best
-from wedgesweep.diagnose.evaluation import Evaluation, Point, Scenario, best_evaluation_per_test
+from wedgesweep.diagnose.evaluation import Comparison, Evaluation, Point, Scenario, best_evaluation_per_test
 from wedgesweep.diagnose.fit_data import FitData
 from wedgesweep.diagnose.fit_parameters import Hypothesis, Values
 from wedgesweep.uncertain import UncertainNumbers, uncertain_numbers
@@ -116,27 +116,18 @@ class Model:
     def evaluate_all(self, points: Sequence[Point]) -> list[Evaluation]:
         """Simulate many points at once."""
         compared = self.data.compare([self.scenario(point) for point in points], self.tolerance)
-        priors = self.nuisance_weight.shape[1]
-        return [
-            Evaluation(
-                replace(point, warm=each.warm),
-                each.response,
-                each.residual,
-                self._prior(point),
-                each.found,
-                priors,
-            )
-            for point, each in zip(points, compared, strict=True)
-        ]
+        return [self._evaluation(*each) for each in zip(points, compared, strict=True)]
+
+    def _evaluation(self, point: Point, found: Comparison) -> Evaluation:
+        nuisance = point.nuisance[:, : self.nuisance_weight.shape[1]] * self.nuisance_weight
+        uncertain = (point.x[self.size :] - self.uncertain.mean) / self.uncertain.std
+        here = replace(point, warm=found.warm)
+        return Evaluation(here, found.response, found.residual, nuisance, uncertain, found.found)
 
     def best_nuisances(self, points: Sequence[Point]) -> np.ndarray:
         """Nuisance parameters (T, N) of each test from the point that fits it best."""
         best = best_evaluation_per_test(self.evaluate_all(points))
         return np.array([each.nuisance for each in points])[best, np.arange(best.size)]
-
-    def _prior(self, point: Point) -> np.ndarray:
-        nuisance = point.nuisance[:, : self.nuisance_weight.shape[1]] * self.nuisance_weight
-        return np.r_[nuisance.ravel(), (point.x[self.size :] - self.uncertain.mean) / self.uncertain.std]
 
     def start(self, base: "Fit | None", x: np.ndarray) -> Point:
         """The point with parameters x (k,) of the hypothesis, and everything else as in a base fit.

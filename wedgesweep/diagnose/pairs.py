@@ -7,9 +7,8 @@ would fit best if responses added. The most promising pairs are then followed fu
 as well.
 """
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
-from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -81,45 +80,26 @@ class PairSearch(NamedTuple):
         """The best pair."""
         return Best(self.found[0].effects, self.found[0].penalised) if self.found else NO_BEST
 
-    @property
-    def leading(self) -> list[str]:
-        """The effects that fit best by themselves."""
-        return sorted(self.singles, key=lambda effect: self.singles[effect].fit.chi2)[:LEADING]
-
-    def with_more(self, pairs: Callable[["PairSearch"], list[Explanation]]) -> "PairSearch":
-        """The search after one more stage."""
-        return self._replace(found=best_of_each([*self.found, *pairs(self)], penalised))
-
-    def with_all_others(self, first: Iterable[str], except_for: Sequence[str] = ()) -> list[Combination]:
-        """Combinations of effects, but those in ``except_for``, with every other effect."""
+    def with_others(self, first: Iterable[str], what: str) -> "PairSearch":
+        """The search after a stage that fits combinations of some effects with every other one."""
         known = self.singles
-        return [
-            Combination(known[one], known[other])
-            for one in first
-            for other in known
-            if one != other and one not in except_for
-        ]
+        both = [Combination(known[one], known[other]) for one in first for other in known if one != other]
+        found = _fit_combinations(self, both, what)
+        return self._replace(found=best_of_each([*self.found, *found], penalised))
 
 
 def fit_pairs(search: Search, base: Fit, singles: Sequence[Explanation], scans: Scans) -> list[Explanation]:
     """Fit pairs of effects, and return them best first; ``singles``: best fit of each effect by itself."""
     known = {each.effects[0]: single_scan(base, each.fit, scans[each.effects[0]]) for each in singles}
+    leading = sorted(known, key=lambda effect: known[effect].fit.chi2)[:LEADING]
     job = PairSearch(search, base, known, [])
-    for name, pairs in STAGES.items():
-        if name == PAIRS or verdict.none_adequate(job.found):
-            job = search.tried(name, job, partial(PairSearch.with_more, pairs=pairs))
+    job = search.tried(PAIRS, job, lambda job: job.with_others(leading, PAIRS))
+    if verdict.none_adequate(job.found):
+        # Effects that do not stand out by themselves may do so in a pair.
+        showing = dict.fromkeys(effect for each in job.found[:SEVERAL] for effect in each.effects)
+        more = [effect for effect in showing if effect not in leading]
+        job = search.tried(FURTHER_PAIRS, job, lambda job: job.with_others(more, FURTHER_PAIRS))
     return job.found
-
-
-def pairs_with_leading(job: PairSearch) -> list[Explanation]:
-    """Each of the best single effects with every other one."""
-    return _fit_combinations(job, job.with_all_others(job.leading), PAIRS)
-
-
-def pairs_with_showing(job: PairSearch) -> list[Explanation]:
-    """Effects that do not stand out by themselves may do so in a pair."""
-    showing = dict.fromkeys(effect for each in job.found[:SEVERAL] for effect in each.effects)
-    return _fit_combinations(job, job.with_all_others(showing, job.leading), FURTHER_PAIRS)
 
 
 def _fit_combinations(job: PairSearch, combinations: Sequence[Combination], what: str) -> list[Explanation]:
@@ -142,16 +122,16 @@ def _fit_combinations(job: PairSearch, combinations: Sequence[Combination], what
 def _continued(search: Search, fits: Sequence[Fit], iterations: int, what: str) -> list[Fit]:
     """Fits continued for some iterations, the best first; as they are once the budget is spent."""
     order = sorted(fits, key=lambda fit: fit.chi2)
-    found = search.each_affordable(lambda fit: _followed(fit, iterations), order, what, _effects)
+
+    def followed(fit: Fit) -> Fit:
+        return minimise(fit.model, fit.evaluation, iterations)
+
+    found = search.each_affordable(followed, order, what, _effects)
     return [*found, *order[len(found) :]]
 
 
 def _effects(each: Combination | Fit) -> tuple[str, ...]:
     return each.effects
-
-
-def _followed(fit: Fit, iterations: int) -> Fit:
-    return minimise(fit.model, fit.evaluation, iterations)
 
 
 def _best_of_pairs(fits: Sequence[Fit]) -> list[Fit]:
@@ -237,10 +217,3 @@ def components(search: Search, found: Sequence[Explanation]) -> list[Explanation
         return search.explanation(minimise(model, model.evaluate(start)))
 
     return [*found, *search.each(alone, pair.effects)]
-
-
-# Stages of the search for pairs; the second one is taken where no pair is adequate.
-STAGES: dict[str, Callable[[PairSearch], list[Explanation]]] = {
-    PAIRS: pairs_with_leading,
-    FURTHER_PAIRS: pairs_with_showing,
-}

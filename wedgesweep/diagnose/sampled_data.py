@@ -262,12 +262,11 @@ def best_of_each_test(evaluations: Sequence[Evaluation]) -> Evaluation:
     def chosen(values: Sequence[np.ndarray]) -> np.ndarray:
         return np.array(values)[best, np.arange(best.size)]
 
-    nuisance_prior = chosen([each.nuisance_prior for each in evaluations])
     return replace(
         first,
         point=replace(first.point, nuisance=chosen([each.point.nuisance for each in evaluations])),
         response=chosen([each.response for each in evaluations]),
         residual=chosen([each.residual for each in evaluations]),
-        prior=np.r_[nuisance_prior.ravel(), first.uncertain_prior],
+        nuisance_prior=chosen([each.nuisance_prior for each in evaluations]),
         found_tests=chosen([each.found_tests for each in evaluations]),
     )

@@ -221,13 +221,6 @@ class Explained(NamedTuple):
         return Best(best.effects, best.penalised)
 
 
-class BaseFit(NamedTuple):
-    """The fitted base model, and the search on data that are aligned to it (``FitData.aligned_to``)."""
-
-    search: Search
-    base: Explanation
-
-
 class SingleFit(NamedTuple):
     """Best fit of one effect, the scan over its range, and the data, aligned where the effect asks for it."""
 
@@ -236,16 +229,12 @@ class SingleFit(NamedTuple):
     data: FitData
 
 
-class SingleFits(NamedTuple):
-    """Best fits of all effects, in their order, with their scans."""
+def base_fit(search: Search) -> Explained:
+    """Fit the base model: nuisance parameters of the tests and uncertain parameters only.
 
-    search: Search
-    explanations: list[Explanation]
-    scans: Scans
-
-
-def base_fit(search: Search) -> BaseFit:
-    """Fit the base model: nuisance parameters of the tests and uncertain parameters only."""
+    The data of the search are aligned to the fit then (``FitData.aligned_to``).
+    """
+    search.progress("base model")
     model = search.model()
     start = model.start(None, np.zeros(0))
     points = [replace(start, x=x) for x in model.uncertain_starts()]
@@ -258,7 +247,7 @@ def base_fit(search: Search) -> BaseFit:
             "nuisances held", fit, lambda fit: min(fit, _from_held(search, model, evaluations), key=_chi2)
         )
     fit = _aligned(search, search.tried(INFLUENTIAL, fit, refit_without_influential_tests))
-    return BaseFit(replace(search, data=fit.model.data), search.explanation(fit))
+    return Explained(replace(search, data=fit.model.data), search.explanation(fit), [], {})
 
 
 def _from_held(search: Search, model: Model, evaluations: Sequence[Evaluation]) -> Fit:
@@ -280,20 +269,21 @@ def _from_several(search: Search, model: Model, evaluations: Sequence[Evaluation
     return best if best.converged else minimise(model, best.evaluation)
 
 
-def refit_base(search: Search, base: Explanation, found: Sequence[Explanation]) -> BaseFit:
+def refit_base(known: Explained) -> Explained:
     """Fit the base model again from where its best extension ended, and keep the better fit.
 
     Otherwise an extension would gain what the base model lost by stopping short of its minimum.
     """
+    search, base, found, _ = known
     best = min(found, key=penalised, default=base).fit
     model, values = search.model(), best.model.values(best.x)
     x = np.clip(model.uncertain.at(values), model.low, model.high)
     _, at_rest = search.data.start()
     fit = minimise(model, model.evaluate(replace(best.point, x=x, warm=at_rest)))
     if fit.chi2 >= base.fit.chi2 - SLIGHT:
-        return BaseFit(search, base)
+        return known
     fit = _aligned(search, fit)
-    return BaseFit(replace(search, data=fit.model.data), search.explanation(fit))
+    return known._replace(search=replace(search, data=fit.model.data), base=search.explanation(fit))
 
 
 def _aligned(search: Search, fit: Fit) -> Fit:
@@ -305,12 +295,13 @@ def _aligned(search: Search, fit: Fit) -> Fit:
     return search.tried(OTHER_NUISANCES, fit, from_other_nuisances)
 
 
-def single_fits(search: Search, base: Fit) -> SingleFits:
+def single_fits(known: Explained) -> Explained:
     """Fit every candidate effect by itself; one whose fit raises an error is no candidate any more."""
+    search, base, _, _ = known
 
     def fitted(effect: str) -> SingleFit | None:
         try:
-            one = single_fit(search, effect, base)
+            one = single_fit(search, effect, base.fit)
         except Exception as error:  # one odd effect must not take the others with it
             search.failed[effect] = error
             return None
@@ -319,8 +310,9 @@ def single_fits(search: Search, base: Fit) -> SingleFits:
 
     found: dict[str, SingleFit] = {k: one for k, one in search.each_effect(fitted).items() if one}
     aligned = [one.data for effect, one in found.items() if search.data.brings_nuisances(effect)]
-    return SingleFits(
+    return Explained(
         replace(search, effects=tuple(found), data=aligned[-1] if aligned else search.data),
+        base,
         [one.explanation for one in found.values()],
         {effect: one.scan for effect, one in found.items()},
     )

@@ -4,19 +4,21 @@ Each says when it is taken, tells what it changed (``Search.tried``), and can be
 """
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 from wedgesweep.diagnose import verdict
 from wedgesweep.diagnose.beyond_range import followed_beyond
 from wedgesweep.diagnose.explanation import Explanation, best_of_each, penalised
+from wedgesweep.diagnose.least_squares import BRIEF, minimise
 from wedgesweep.diagnose.pairs import components, fit_pairs
-from wedgesweep.diagnose.renewal import with_renewed_covariance
 from wedgesweep.diagnose.search import (
     NOTABLE,
     PAIRS_SHARE,
     Explained,
     Search,
     base_fit,
+    contenders,
     followed,
     from_shared_nuisances,
     from_special_cases,
@@ -36,7 +38,7 @@ class Stage(NamedTuple):
 
 def explain(search: Search) -> Explained:
     """Fit the base model, every candidate, and pairs of candidates where no single one is adequate."""
-    return taken((*REFINEMENT, *PAIRS), single_effects(base_model(search)))
+    return taken((*REFINEMENT, *PAIRS), single_fits(base_fit(search)))
 
 
 def taken(stages: Sequence[Stage], known: Explained) -> Explained:
@@ -47,34 +49,15 @@ def taken(stages: Sequence[Stage], known: Explained) -> Explained:
     return known
 
 
-def base_model(search: Search) -> Explained:
-    """The fit of the base model."""
-    search.progress("base model")
-    search, base = base_fit(search)
-    return Explained(search, base, [], {})
-
-
-def single_effects(known: Explained) -> Explained:
-    """The fit of every candidate effect by itself."""
-    search, found, scans = single_fits(known.search, known.base.fit)
-    return Explained(search, known.base, found, scans)
-
-
 def _base_model_again(known: Explained) -> Explained:
     """The base model from where an extension ended, and single effects beside it if it fits far better."""
-    search, base, found, scans = known
-    search, better = refit_base(search, base, found)
+    found, better = known.explanations, refit_base(known)
     # An adequate explanation hands its nuisance parameters on to the others, which need no better base then.
-    handed_on = search.data.shares_nuisances and not verdict.none_adequate(found)
-    if better.fit.chi2 < NOTABLE * base.fit.chi2 and not handed_on:
-        search, again, scans = single_fits(search, better.fit)
-        found = best_of_each([*found, *again], penalised)
-    return Explained(search, better, found, scans)
-
-
-def _base_model_at_last(known: Explained) -> Explained:
-    search, base = refit_base(known.search, known.base, known.explanations)
-    return known._replace(search=search, base=base)
+    handed_on = known.search.data.shares_nuisances and not verdict.none_adequate(found)
+    if better.base.fit.chi2 >= NOTABLE * known.base.fit.chi2 or handed_on:
+        return better
+    again = single_fits(better)
+    return again._replace(explanations=best_of_each([*found, *again.explanations], penalised))
 
 
 def _beyond_range(known: Explained) -> Explained:
@@ -97,6 +80,39 @@ def _found(
 
 def _explanations(function: Callable[[Explained], list[Explanation]]) -> Callable[[Explained], Explained]:
     return lambda known: known._replace(explanations=best_of_each(function(known), penalised))
+
+
+def _with_renewed_covariance(explained: Explained) -> Explained:
+    """All fits compared again under the covariance of the best explanation; the leading ones are refitted.
+
+    The noise of a recorded input reaches the comparison through the response. Near a resonance the base model
+    may pass on much more, or much less, of it than the right model does. All explanations share one
+    covariance, as only then are their misfits on one scale.
+    """
+    search, base, found, scans = explained
+    best = min([base, *found], key=penalised).fit
+    data = search.data.renewed(best.model.scenario(best.point))
+    if data is search.data:
+        return explained
+    search = replace(search, data=data)
+    found = sorted((_compared_again(search, each) for each in found), key=penalised)
+    leading = contenders(search, found)
+    others = [each for each in found if not any(each is one for one in leading)]
+    again = [_compared_again(search, base), *leading]
+    base, *leading = search.each(lambda each: _refitted(search, each), again)
+    found = sorted([*leading, *others], key=penalised)
+    scans = {effect: [data.compared_again(each) for each in scan] for effect, scan in scans.items()}
+    return Explained(search, base, found, scans)
+
+
+def _compared_again(search: Search, each: Explanation) -> Explanation:
+    model = each.fit.model.on(search.data)
+    evaluation = search.data.compared_again(each.fit.evaluation)
+    return search.explanation(replace(each.fit, model=model, evaluation=evaluation))
+
+
+def _refitted(search: Search, each: Explanation) -> Explanation:
+    return search.explanation(minimise(each.fit.model, each.fit.evaluation, BRIEF))
 
 
 def _inadequate(known: Explained) -> bool:
@@ -122,7 +138,7 @@ REFINEMENT = (
     Stage("base model again", _base_model_again),
     Stage("special cases", _found(from_special_cases)),
     Stage("starts shared", _found(from_shared_nuisances)),
-    Stage("covariance renewed", with_renewed_covariance),
+    Stage("covariance renewed", _with_renewed_covariance),
 )
 PAIRS = (
     Stage("best refitted", _found(refit_best), lambda known: verdict.none_adequate([known.base])),
@@ -131,6 +147,6 @@ PAIRS = (
     Stage("components", _found(components), _pair_leads),
     Stage("best refitted again", _found(refit_best), _shared_and_inadequate),
     Stage("starts shared again", _found(from_shared_nuisances)),
-    Stage("base model at last", _base_model_at_last),
-    Stage("covariance renewed again", with_renewed_covariance),
+    Stage("base model at last", refit_base),
+    Stage("covariance renewed again", _with_renewed_covariance),
 )

@@ -43,7 +43,8 @@ def covariance(data: "HarmonicData", scenario: Scenario) -> np.ndarray:
     """Of residuals over the noise of the responses, (T, m, m), by the response in a scenario."""
     here = data.compare([scenario], TIGHT)[0]
     point = replace(scenario.point, warm=here.warm)
-    evaluation = Evaluation(point, here.response, here.residual, np.zeros(0), here.found, 0)
+    pulls = here.residual[:, :0], np.zeros(0)
+    evaluation = Evaluation(point, here.response, here.residual, *pulls, here.found)
     columns: list[np.ndarray] = []
     for name in ORDERS:
         for turn in (1.0, 1j):
