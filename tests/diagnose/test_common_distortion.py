@@ -8,7 +8,6 @@ import pytest
 
 from tests.diagnose.test_stated_input import (
     AMPLITUDE,
-    EFFECTS,
     FREQUENCIES,
     STD,
     distorted,
@@ -127,12 +126,3 @@ def test_the_result_tells_the_fitted_harmonics():
     own = config.parse(extended(found)).effects[DISTORTION]
     assert own["third"] == pytest.approx(fitted["third"])
     assert own["third_phase"] == pytest.approx(np.radians(fitted["third_phase_deg"]))
-
-
-def test_no_power_is_lost():
-    """The same harmonics in all tests are found in some, and known in the others."""
-    data = replace(distorted(STD, effects={"viscous_damping": {"coefficient": 2.0}}), model_error=0.0)
-    _, found = finding_of(declared(data))
-    assert found.verdict == verdict.NAMED
-    assert found.best.effects == ("viscous_damping",)
-    assert set(EFFECTS) > set(found.best.effects)

@@ -9,7 +9,7 @@ import pytest
 from tests.diagnose.synthetic import AMPLITUDES, LAG, MODEL, drawn, searched
 from wedgesweep.diagnose.evaluation import Point
 from wedgesweep.diagnose.least_squares import Step, _better, _covariance, lm_step, minimise, tight_refit
-from wedgesweep.diagnose.normal_equations import normal_equations
+from wedgesweep.diagnose.normal_equations import Reduced, normal_equations
 
 
 def test_clean_data_leave_chi_squared():
@@ -82,11 +82,12 @@ def test_a_parameter_that_does_not_show_shortens_no_step():
     unseen = np.array([1.0, 0.0])
     alone = replace(
         found,
-        global_block=found.global_block * np.outer(unseen, unseen) + np.diag([0.0, 1e-9]),
+        global_block=found.global_block * np.outer(unseen, unseen),
+        prior=Reduced(np.diag([0.0, 1e-9]), np.zeros(2)),
         coupling_block=found.coupling_block * unseen,
         global_gradient=found.global_gradient * unseen,
     )
-    wild = replace(alone, global_gradient=alone.global_gradient + np.array([0.0, 1.0]))
+    wild = replace(alone, prior=alone.prior._replace(gradient=np.array([0.0, 1.0])))
     expected, seen = (lm_step(model, start.point, each, 1e-3).point.x for each in (alone, wild))
     assert seen[0] == pytest.approx(expected[0], rel=1e-9)
     assert expected[0] != start.point.x[0]

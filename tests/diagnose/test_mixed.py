@@ -111,6 +111,7 @@ def test_gains_of_inputs_belong_to_the_tests_that_have_one(tmp_path):
     assert min(local.values()) >= 1.0
 
 
+@pytest.mark.acceptance
 def test_the_start_of_a_frame_has_columns_of_its_own_beside_steady_tests(tmp_path):
     """Steady tests have a column for the phase of a tone, which none of them has here."""
     model = test_transients.WEDGE

@@ -155,6 +155,7 @@ def test_a_heavier_rig_gets_the_same_advice(tmp_path):
     assert heavy.distance == pytest.approx(light.distance, rel=0.02)
 
 
+@pytest.mark.acceptance
 @pytest.mark.parametrize("rival", ["preload", "fixture_resonance"])
 def test_explanations_with_and_without_a_moving_side_frame_are_separated(tmp_path, rival):
     """The start of the side frame is fitted beside one of them only."""

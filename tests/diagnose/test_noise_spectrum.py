@@ -72,8 +72,8 @@ def test_what_does_not_repeat_is_noise():
     assert found.correlation == pytest.approx(0.9, abs=0.08)
 
 
-@pytest.mark.few(1)
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.acceptance
+@pytest.mark.parametrize("seed", range(2))
 def test_coloured_noise_is_no_cause(tmp_path, seed):
     path = write(tmp_path, pole=0.9, seed=seed)
     found = diagnosed(path, [*HIDDEN, "friction_level", "quadratic_drag"])

@@ -31,7 +31,7 @@ def test_a_rough_misfit_is_not_taken_for_that_of_a_fit():
 
 
 @pytest.mark.few(1)
-@pytest.mark.parametrize("length", [0.9e-6, 1.03e-6, 1.5e-6])
+@pytest.mark.parametrize("length", [0.9e-6, 1.5e-6])
 def test_an_effect_with_which_the_base_model_fits_implausibly_starts_without_it(length):
     """Faces that creep where the base model's stick: it moves only with far less friction or input.
 
@@ -89,7 +89,7 @@ def clean(seed=0, effects=MappingProxyType({}), uncertain=MappingProxyType({"fri
 
 
 @pytest.mark.few(1)
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", range(2))
 def test_the_base_model_does_not_stop_short_of_its_uncertain_numbers(seed):
     base = base_of(clean(seed))
     assert base.x == pytest.approx([0.971], abs=0.003)
@@ -105,7 +105,7 @@ ASIDE = np.array([-1.2, 1.4, 0.0, -2.6, 1.1, 0.7, 2.5, 2.5, 1.2, 0.2, 0.9, -0.7]
 
 
 @pytest.mark.few(1)
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", range(2))
 def test_inputs_do_not_make_up_for_uncertain_numbers(seed):
     data = drawn(
         {"friction_level": {"scale": 1.155}},

@@ -105,10 +105,6 @@ def with_uncertain_harmonics(data, std):
     return data.with_covariance(stated(data))
 
 
-def test_without_the_key_nothing_is_different():
-    assert harmonic_data(frictionless(std=0.0)).by_input is None
-
-
 def chi2_over_dof(data, scenario):
     return (data.compare([scenario], 1e-8)[0].residual ** 2).sum() / data.dof.sum()
 
@@ -184,15 +180,6 @@ def test_some_of_the_tests_are_compared_as_before():
     np.testing.assert_allclose(some.chi2_by_test, all_tests.chi2_by_test[rows], rtol=1e-6)
 
 
-def test_a_model_error_has_no_part_in_what_the_input_adds():
-    data = harmonic_data(frictionless()).with_model_error(0.02)
-    expected = closed_form(data)
-    assert 3.0 < expected.max() < 0.01 * closed_form(harmonic_data(frictionless())).max()
-    np.testing.assert_allclose(
-        np.linalg.inv(data.whitening @ data.whitening), expected, atol=1e-4 * expected.max()
-    )
-
-
 def test_bootstrap_samples_have_inputs_with_harmonics():
     data = with_uncertain_harmonics(distorted(0.0), STD)
     truth = Model(data, Hypothesis(())).evaluate(stated(data).point)
@@ -213,15 +200,6 @@ EFFECTS = ("input_distortion", "viscous_damping", "displacement_gain")
 def finding_of(data):
     search, base, found, _ = explain(Search.of(data, EFFECTS))
     return search, verdict.decide(base, found, verdict.thresholds_for(search.data))
-
-
-def test_a_distortion_as_large_as_declared_is_not_missing():
-    data = replace(distorted(STD), model_error=0.02)
-    _, blamed = finding_of(data)
-    assert blamed.verdict == verdict.NAMED
-    assert blamed.best.effects == ("input_distortion",)
-    _, right = finding_of(with_uncertain_harmonics(data, STD))
-    assert right.verdict == verdict.NOTHING
 
 
 def test_a_distortion_ten_times_as_large_is_named():

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from tests.command import invoke
 from wedgesweep import api, excitation
 from wedgesweep.config import parse
 from wedgesweep.diagnose.diagnosis import explain
@@ -207,17 +206,6 @@ def test_nothing_is_missing_where_nothing_is(tmp_path):
     assert diagnosed(write(tmp_path), ["viscous_damping", "friction_level"]).verdict == "nothing-missing"
 
 
-@pytest.mark.acceptance
-def test_a_wedge_that_is_dropped(tmp_path):
-    starts = ((1e-3, 0.0), (-8e-4, 0.05), (6e-4, -0.04))
-    path = write(
-        tmp_path, WEDGE, {"friction_level": {"scale": 1.2}}, starts, noise=1e-6, rate=1500.0, samples=600
-    )
-    found = diagnosed(path, ["friction_level", "bolster_stiffness"])
-    assert [cause["effect"] for cause in found.causes] == ["friction_level"]
-    assert found.causes[0]["parameters"]["scale"]["value"] == pytest.approx(1.2, rel=0.01)
-
-
 # Far enough from rest for wedges to lift off; the windows of a record of their own each.
 LARGE = ((0.010, 0.0), (-0.008, 0.1), (0.012, -0.3))
 
@@ -240,7 +228,7 @@ def test_a_wedge_that_is_dropped_from_far_away(tmp_path, effect, numbers, keys):
         assert high - low < 0.05 * true
 
 
-@pytest.mark.few(1)
+@pytest.mark.acceptance
 @pytest.mark.parametrize(
     ("effect", "numbers", "places"),
     [
@@ -263,14 +251,6 @@ def test_the_start_of_a_body_that_moves_is_fitted(tmp_path, effect, numbers, pla
     moved = np.abs(fit.point.nuisance[:, -4:])
     assert (moved[:, places] > 1e-3).any(axis=1).all()
     assert not np.delete(moved, places, axis=1).any()
-
-
-def test_files_figures_and_report(tmp_path):
-    path, out = write(tmp_path, effects={"viscous_damping": HIDDEN["viscous_damping"]}), tmp_path / "out"
-    assert "natural" in invoke("check", path)
-    assert "viscous_damping" in invoke("diagnose", path, "-o", out, "--effects", "viscous_damping")
-    assert {"decays.png", "report.html", "gain.png"} <= {each.name for each in out.iterdir()}
-    assert "No figure" not in (out / "report.html").read_text()
 
 
 def test_a_motion_that_does_not_decay_is_refused(tmp_path):

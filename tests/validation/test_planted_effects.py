@@ -16,15 +16,13 @@ FEW = BENCH[::2]
 CANDIDATES = ["guide_friction", "viscous_damping", "stribeck", "displacement_gain", "bolster_stiffness"]
 
 
-@pytest.mark.few(1)
-@pytest.mark.parametrize("candidates", [CANDIDATES, None], ids=["few", "all"])
-def test_a_strong_cause_is_named_with_its_numbers(candidates, tmp_path):
-    checks.strong_cause_is_named(replace(GUIDE_FRICTION, tests=FEW), tmp_path, candidates)
+def test_a_strong_cause_is_named_with_its_numbers(tmp_path):
+    checks.strong_cause_is_named(replace(GUIDE_FRICTION, tests=FEW), tmp_path, CANDIDATES)
 
 
 def test_in_clean_data_nothing_is_named(tmp_path):
     measured, _ = make(replace(CLEAN, tests=FEW), tmp_path)
-    found = diagnose(measured, tmp_path / "found")
+    found = diagnose(measured, tmp_path / "found", CANDIDATES)
     assert found.verdict == "nothing-missing"
     assert found.document["causes"] == []
     assert (found.directory / "report.html").exists()
@@ -34,10 +32,9 @@ def test_in_clean_data_nothing_is_named(tmp_path):
 
 
 @pytest.mark.acceptance
-@pytest.mark.parametrize("candidates", [CANDIDATES, None], ids=["few", "all"])
-def test_two_tests_of_unknown_amplitude_ask_for_a_third(candidates, tmp_path):
+def test_two_tests_of_unknown_amplitude_ask_for_a_third(tmp_path):
     measured, _ = make(PAPER_TESTS, tmp_path)
-    found = diagnose(measured, tmp_path / "found", candidates, "--no-report")
+    found = diagnose(measured, tmp_path / "found", CANDIDATES, "--no-report")
     assert found.verdict in ("data-insufficient", "tied")
     following = found.document["next_test"]
     assert following["frequency_hz"] > 0.0

@@ -68,13 +68,13 @@ def of_responses(parts: Sequence[tuple[FitData, Evaluation]], dof: float) -> flo
     return smallest_adequate(chi2, dof)
 
 
-def of_fit(fit: Fit) -> float:
-    """Accuracy of a fit where it ended."""
+def of_fit(fit: Fit, dof: float | None = None) -> float:
+    """Accuracy of a fit where it ended; ``dof``: degrees of freedom, by default those of the fit."""
 
     def chi2(size: float) -> float:
         return fit.model.data.with_model_error(size).compared_again(fit.evaluation).chi2
 
-    return smallest_adequate(chi2, fit.dof) if fit.evaluation.found else inf
+    return smallest_adequate(chi2, fit.dof if dof is None else dof) if fit.evaluation.found else inf
 
 
 def refined(fit: Fit) -> Accuracy:
@@ -105,11 +105,6 @@ def _minimised(fit: Fit, size: float) -> Fit:
     data = fit.model.data.with_model_error(size)
     model = fit.model.on(data)
     here = data.compared_again(fit.evaluation)
-    stated, at_rest = data.start()
-    priors = model.nuisance_weight.shape[1]
-    known = np.isfinite(data.nuisance_std)
-    nuisance = fit.point.nuisance.copy()
-    nuisance[:, :priors] = np.where(known, stated[:, :priors], nuisance[:, :priors])
     x = np.r_[fit.x[: model.size], model.uncertain.mean]
-    as_stated = model.evaluate(replace(fit.point, x=x, nuisance=nuisance, warm=at_rest))
+    as_stated = model.evaluate(replace(data.as_stated(fit.point), x=x, warm=data.start()[1]))
     return minimise(model, min(here, as_stated, key=lambda each: each.chi2), ITERATIONS)

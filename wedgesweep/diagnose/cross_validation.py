@@ -1,6 +1,6 @@
 """Predictions of tests that a model was not fitted to: their accuracy, and the gain of an extended model."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -50,14 +50,6 @@ class Prediction(NamedTuple):
         return np.where(self.evaluation.found_tests, misfit, self.data.power)
 
 
-class MeanSquares(NamedTuple):
-    """Mean squares of the whitened residuals that base model, extended model and noise leave."""
-
-    base: float
-    extended: float
-    noise: float
-
-
 @dataclass(frozen=True)
 class HeldOut:
     """Squared misfit of one test under models that were fitted to other tests.
@@ -89,13 +81,14 @@ class Gain:
 
     held_out: tuple[HeldOut, ...]
 
-    def mean_squares(self) -> MeanSquares:
-        observations = sum(each.observations for each in self.held_out)
-        return MeanSquares(
-            sum(each.base for each in self.held_out) / observations,
-            sum(each.extended for each in self.held_out) / observations,
-            sum(each.noise for each in self.held_out) / observations,
-        )
+    def mean_squares(self) -> np.ndarray:
+        """Mean squares of the whitened residuals that base model, extended model and noise leave, (3,)."""
+        return self._squares.sum(axis=0) / sum(each.observations for each in self.held_out)
+
+    @property
+    def _squares(self) -> np.ndarray:
+        """Squared misfits that base model, extended model and noise leave, (tests left out, 3)."""
+        return np.array([(each.base, each.extended, each.noise) for each in self.held_out])
 
     @property
     def excess_removed(self) -> float:
@@ -104,7 +97,7 @@ class Gain:
         Noise counts with the model error that is allowed. Less error than that leaves no excess.
         """
         base, extended, noise = self.mean_squares()
-        return min((base - extended) / (base - noise), 1.0) if base > noise else 0.0
+        return min(float((base - extended) / (base - noise)), 1.0) if base > noise else 0.0
 
     @property
     def interval(self) -> list[float] | None:
@@ -115,16 +108,11 @@ class Gain:
         not count. The quantiles are widened, as resampling underestimates the scatter of few tests
         (Hesterberg, 2015, "What teachers should know about the bootstrap", sec. 5.3).
         """
-        tests = sorted({each.test for each in self.held_out})
+        tests, rows = np.unique([each.test for each in self.held_out], return_inverse=True)
         if len(tests) < FEWEST:
             return None
-        by_test = [[each for each in self.held_out if each.test == test] for test in tests]
-        sums = np.array(
-            [
-                [sum(getattr(h, name) for h in rows) for name in ("base", "extended", "noise")]
-                for rows in by_test
-            ]
-        )
+        sums = np.zeros((len(tests), 3))
+        np.add.at(sums, rows, self._squares)
         drawn = np.random.default_rng(0).integers(0, len(tests), (RESAMPLED, len(tests)))
         base, extended, noise = sums[drawn].sum(axis=1).T
         excess = base - noise
@@ -181,8 +169,11 @@ def cross_validate(base: Fit, extended: Fit, predict: Predictor) -> Gain:
 def held_out_accuracy(fit: Fit, predict: Predictor) -> float | None:
     """Accuracy of the predictions of tests that were left out of a fit; None if there are none."""
     predicted = predict(fit)
-    if not predicted:
-        return None
+    return accuracy_of(predicted, fit) if predicted else None
+
+
+def accuracy_of(predicted: Sequence[Prediction], fit: Fit) -> float:
+    """Accuracy of predictions of tests that were left out of a fit."""
     left = fit.model.data.observations - local_numbers(fit)
     dof = sum(left[one.tests].sum() for one in predicted)
     return accuracy.of_responses([(one.data, one.evaluation) for one in predicted], dof)
@@ -224,11 +215,7 @@ def _predicted(fit: Fit, scheme: str, rows: np.ndarray) -> Prediction:
         trained = supported(minimise(trained.model, trained.evaluation, ADAPT))
     part = subset_fit(fit, rows)
     part = replace(part, model=replace(part.model, hypothesis=trained.model.hypothesis))
-    evaluation = part.model.evaluate(replace(part.point, x=trained.x))
-    for _ in range(LOCAL):
-        if not evaluation.found:
-            break
-        evaluation = part.model.evaluate(with_own_nuisances(part.model, evaluation))
+    evaluation = with_own_nuisances(part.model, replace(part.point, x=trained.x))
     return Prediction(scheme, rows, part.model.data, evaluation, trained.effects)
 
 
@@ -257,10 +244,15 @@ def undetermined(fit: Fit) -> tuple[str, ...]:
     return tuple(dict.fromkeys(name for name, is_loose in zip(names, loose, strict=True) if is_loose))
 
 
-def with_own_nuisances(model: Model, evaluation: Evaluation) -> Point:
-    """The point after a step of the nuisance parameters alone."""
-    equations = normal_equations(model.holding(slice(None), evaluation.point.x), evaluation)
-    nothing = np.zeros(len(evaluation.point.x))
-    step = equations.local_step(nothing, 0.0)[:, equations.eliminated :]
-    step = model.data.predicted_nuisances(evaluation, step)
-    return evaluation.point.moved(nothing, np.clip(step, -LOCAL_STEP, LOCAL_STEP))
+def with_own_nuisances(model: Model, point: Point) -> Evaluation:
+    """Evaluation of held-out tests after steps of their nuisance parameters alone."""
+    held, nothing = model.holding(slice(None), point.x), np.zeros(point.x.size)
+    evaluation = model.evaluate(point)
+    for _ in range(LOCAL):
+        if not evaluation.found:
+            break
+        equations = normal_equations(held, evaluation)
+        step = equations.local_step(nothing, 0.0)[:, equations.eliminated :]
+        step = np.clip(model.data.predicted_nuisances(evaluation, step), -LOCAL_STEP, LOCAL_STEP)
+        evaluation = model.evaluate(evaluation.point.moved(nothing, step))
+    return evaluation

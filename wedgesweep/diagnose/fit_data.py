@@ -12,6 +12,7 @@ and the first L are fitted by simulation.
 
 from abc import abstractmethod
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, Self
 
 import numpy as np
@@ -159,6 +160,13 @@ class FitData(Protocol):
     @abstractmethod
     def start(self) -> tuple[np.ndarray, WarmStart]:
         """Nuisance parameters (T, N) as stated, and a start at rest."""
+
+    def as_stated(self, point: Point) -> Point:
+        """A point with the nuisance parameters that have a prior as they are stated."""
+        nuisance, priors = point.nuisance.copy(), self.nuisance_std.shape[1]
+        known, stated = np.isfinite(self.nuisance_std), self.start()[0][:, :priors]
+        nuisance[:, :priors] = np.where(known, stated, nuisance[:, :priors])
+        return replace(point, nuisance=nuisance)
 
     @abstractmethod
     def subset(self, rows: np.ndarray) -> Self:

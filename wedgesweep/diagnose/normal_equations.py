@@ -14,7 +14,7 @@ REGULAR = 1e-12
 
 
 class Reduced(NamedTuple):
-    """Normal equations of the parameters alone: matrix (k, k) and gradient (k,)."""
+    """Normal equations of the parameters alone: matrix (k, k) and gradient (k,), or those of each test."""
 
     matrix: np.ndarray
     gradient: np.ndarray
@@ -24,8 +24,9 @@ class Reduced(NamedTuple):
 class NormalEquations:
     """Blocks of the normal equations: L nuisance parameters local to each test, k global parameters.
 
-    ``local_block`` (T, L, L), ``coupling_block`` (T, L, k), ``global_block`` (k, k), ``local_gradient``
-    (T, L), ``global_gradient`` (k,). The first ``eliminated`` nuisance parameters are never damped.
+    ``local_block`` (T, L, L), ``coupling_block`` (T, L, k), ``global_block`` (T, k, k), ``local_gradient``
+    (T, L), ``global_gradient`` (T, k): of each test; ``prior``: of the priors of parameters. The first
+    ``eliminated`` nuisance parameters are never damped.
     """
 
     local_block: np.ndarray
@@ -33,6 +34,7 @@ class NormalEquations:
     global_block: np.ndarray
     local_gradient: np.ndarray
     global_gradient: np.ndarray
+    prior: Reduced
     eliminated: int
 
     def _eliminate(self, damping: float) -> tuple[np.ndarray, np.ndarray]:
@@ -44,13 +46,18 @@ class NormalEquations:
         solved = np.linalg.solve(block, right)
         return solved[..., -1], solved[..., :-1]
 
+    def of_each_test(self, damping: float = 0.0) -> Reduced:
+        """Normal equations of the parameters by each test, (T, k, k) and (T, k), without priors."""
+        by_gradient, by_coupling = self._eliminate(damping)
+        matrix = self.global_block - np.einsum("tik,til->tkl", self.coupling_block, by_coupling)
+        return Reduced(
+            matrix, self.global_gradient - np.einsum("tik,ti->tk", self.coupling_block, by_gradient)
+        )
+
     def schur_complement(self, damping: float = 0.0) -> Reduced:
         """Normal equations of the parameters, nuisance parameters eliminated."""
-        by_gradient, by_coupling = self._eliminate(damping)
-        matrix = self.global_block - np.einsum("tik,til->kl", self.coupling_block, by_coupling)
-        return Reduced(
-            matrix, self.global_gradient - np.einsum("tik,ti->k", self.coupling_block, by_gradient)
-        )
+        both = zip(self.of_each_test(damping), self.prior, strict=True)
+        return Reduced(*(each.sum(axis=0) + prior for each, prior in both))
 
     def local_step(self, step: np.ndarray, damping: float) -> np.ndarray:
         """Best step of the nuisance parameters (T, L) beside a step of the parameters (k,)."""
@@ -59,8 +66,10 @@ class NormalEquations:
 
     def predicted_reduction(self, step: np.ndarray, local: np.ndarray) -> float:
         """Reduction of chi-squared by a step if the responses are linear."""
-        slope = self.global_gradient @ step + (self.local_gradient * local).sum()
-        bend = step @ self.global_block @ step + np.einsum("ti,tij,tj->", local, self.local_block, local)
+        matrix, gradient = self.global_block.sum(axis=0), self.global_gradient.sum(axis=0)
+        slope = (gradient + self.prior.gradient) @ step + (self.local_gradient * local).sum()
+        bend = step @ (matrix + self.prior.matrix) @ step
+        bend += np.einsum("ti,tij,tj->", local, self.local_block, local)
         bend += 2.0 * np.einsum("ti,tik,k->", local, self.coupling_block, step)
         return float(-2.0 * slope - bend)
 
@@ -79,10 +88,9 @@ def normal_equations(
     # A nuisance parameter without influence on a test leaves no singular block.
     own = np.einsum("tii->ti", local)
     own += REGULAR * (1.0 + own)
-    global_block = np.einsum("tmk,tml->kl", by_parameter, by_parameter)
-    global_gradient = np.einsum("tmk,tm->k", by_parameter, evaluation.residual)
-    uncertain = np.arange(model.size, len(global_gradient))
-    global_block[uncertain, uncertain] += model.uncertain.std**-2.0
-    global_gradient[model.size :] += evaluation.uncertain_prior / model.uncertain.std
+    global_block = np.einsum("tmk,tml->tkl", by_parameter, by_parameter)
+    global_gradient = np.einsum("tmk,tm->tk", by_parameter, evaluation.residual)
+    own, std = np.zeros(model.size), model.uncertain.std
+    prior = Reduced(np.diag(np.r_[own, std**-2.0]), np.r_[own, evaluation.uncertain_prior / std])
     coupling = np.einsum("tmi,tmk->tik", by_nuisance, by_parameter)
-    return NormalEquations(local, coupling, global_block, gradient, global_gradient, eliminated)
+    return NormalEquations(local, coupling, global_block, gradient, global_gradient, prior, eliminated)

@@ -38,12 +38,9 @@ def refit_without_influential_tests(fit: Fit) -> Fit:
     rows = np.flatnonzero(~left_out)
     kept = subset_fit(fit, rows)
     trimmed = minimise(kept.model, kept.evaluation).point
-    stated, at_rest = model.data.start()
-    priors, known = model.nuisance_weight.shape[1], np.isfinite(model.data.nuisance_std)
-    nuisance = point.nuisance.copy()
-    nuisance[:, :priors] = np.where(known, stated[:, :priors], nuisance[:, :priors])
+    nuisance, priors = model.data.as_stated(point).nuisance, model.nuisance_weight.shape[1]
     nuisance[rows, :priors] = trimmed.nuisance[:, :priors]
-    start = Point(trimmed.x, nuisance, point.warm.where(left_out, at_rest))
+    start = Point(trimmed.x, nuisance, point.warm.where(left_out, model.data.start()[1]))
     again = minimise(model, model.evaluate(_at_best_nuisances(model, start, left_out)))
     return min(fit, again, key=lambda each: each.chi2)
 

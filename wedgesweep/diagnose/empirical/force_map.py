@@ -14,8 +14,6 @@ from wedgesweep.effects.empirical_force import interpolation
 CELLS = 25, 33
 # A cell that holds less than this share of the samples that a cell holds on average was not measured.
 SPARSE = 0.1
-# Standard deviations of a 95 % band.
-BAND = 1.96
 
 
 @dataclass(frozen=True)
@@ -50,16 +48,8 @@ class ForceMap:
         total = weight.sum(axis=axis, keepdims=True)
         weight = np.divide(weight, total, out=np.zeros_like(weight), where=total > 0.0)
         mean = (weight * self.force).sum(axis=axis)
-        count = self.force.shape[1 - axis]
-        rows = np.zeros((count, self.force.size))
-        for i in range(count):
-            own = np.zeros_like(weight)
-            if axis == 0:
-                own[:, i] = weight[:, i]
-            else:
-                own[i] = weight[i]
-            rows[i] = own.ravel()
-        std = np.sqrt(np.einsum("ij,jk,ik->i", rows, self.covariance, rows))
+        own = self.covariance.reshape(*self.force.shape, *self.force.shape)
+        std = np.sqrt(np.einsum(("ij,kj,ijkj->j", "ij,il,ijil->i")[axis], weight, weight, own))
         seen = total.squeeze(axis) > 0.0
         return np.where(seen, mean, np.nan), np.where(seen, std, np.nan)
 

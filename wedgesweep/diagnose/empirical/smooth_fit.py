@@ -15,7 +15,6 @@ import numpy as np
 
 from wedgesweep.diagnose.empirical.hypothesis import EmpiricalHypothesis
 from wedgesweep.diagnose.evaluation import Evaluation
-from wedgesweep.diagnose.jacobian import jacobian
 from wedgesweep.diagnose.model import Fit, Model
 from wedgesweep.diagnose.normal_equations import NormalEquations, normal_equations
 from wedgesweep.effects.empirical_force import PLACES, SPEEDS
@@ -96,18 +95,8 @@ def fit(model: Model, start: Evaluation, groups: Sequence[np.ndarray]) -> Smooth
 
 def _around(model: Model, evaluation: Evaluation, groups: Sequence[np.ndarray]) -> SmoothFit:
     """Everything about an evaluation that steps need, with the best weights of roughness."""
-    derivatives = jacobian(model, evaluation)
-    equations = normal_equations(model, evaluation, derivatives)
-    by_x, residual = derivatives.by_parameter, evaluation.residual
-    coupling = equations.coupling_block
-    right = np.concatenate([coupling, equations.local_gradient[..., None]], axis=-1)
-    solved = np.linalg.solve(equations.local_block, right)
-    information = np.einsum("tmk,tml->tkl", by_x, by_x) - np.einsum(
-        "tik,til->tkl", coupling, solved[..., :-1]
-    )
-    gradient = np.einsum("tmk,tm->tk", by_x, residual) - np.einsum("tik,ti->tk", coupling, solved[..., -1])
-    priors = _priors(model, evaluation)
-    plain = SmoothFit(model, evaluation, information, gradient, *priors, equations)
+    equations = normal_equations(model, evaluation)
+    plain = SmoothFit(model, evaluation, *equations.of_each_test(), *equations.prior, equations)
     return _with_best_roughness(plain, groups)
 
 
@@ -125,16 +114,6 @@ def _with_best_roughness(plain: SmoothFit, groups: Sequence[np.ndarray]) -> Smoo
             each for each in around if each not in tried and ENDS[0] <= min(each) and max(each) <= ENDS[1]
         ]
     return _with_roughness(plain, best)
-
-
-def _priors(model: Model, evaluation: Evaluation) -> tuple[np.ndarray, np.ndarray]:
-    """Information (k, k) and gradient (k,) of priors on uncertain numbers of the model."""
-    size = len(evaluation.point.x)
-    information, pull = np.zeros((size, size)), np.zeros(size)
-    uncertain = np.arange(model.size, size)
-    information[uncertain, uncertain] = model.uncertain.std**-2.0
-    pull[model.size :] = evaluation.uncertain_prior / model.uncertain.std
-    return information, pull
 
 
 def _with_roughness(plain: SmoothFit, powers: tuple[int, int]) -> SmoothFit:

@@ -8,9 +8,9 @@ import numpy as np
 
 from wedgesweep.diagnose import accuracy
 from wedgesweep.diagnose.cross_validation import (
-    LOCAL,
+    Prediction,
+    accuracy_of,
     held_out_groups,
-    local_numbers,
     with_own_nuisances,
 )
 from wedgesweep.diagnose.empirical.force_map import ForceMap, force_map
@@ -19,7 +19,7 @@ from wedgesweep.diagnose.empirical.named_force import at_nodes, half_step
 from wedgesweep.diagnose.empirical.nearest import Nearest, nearest
 from wedgesweep.diagnose.empirical.smooth_fit import SmoothFit, fit
 from wedgesweep.diagnose.evaluation import Evaluation
-from wedgesweep.diagnose.fit_data import FitData, Motion
+from wedgesweep.diagnose.fit_data import Motion
 from wedgesweep.diagnose.fit_parameters import Values
 from wedgesweep.diagnose.ladder import Level, Rated
 from wedgesweep.diagnose.model import Fit, Model
@@ -167,27 +167,16 @@ def _step(found: SmoothFit) -> tuple[float, float]:
 
 def _accuracy(found: SmoothFit) -> float:
     """Accuracy of a fit where it ended, with its effective number of parameters."""
-
-    def chi2(size: float) -> float:
-        return found.model.data.with_model_error(size).compared_again(found.evaluation).chi2
-
-    return accuracy.smallest_adequate(chi2, float(found.model.data.dof.sum()) - found.freedom)
+    return accuracy.of_fit(found.as_fit, float(found.model.data.dof.sum()) - found.freedom)
 
 
 def _held_out(found: SmoothFit, groups: Sequence[tuple[str, np.ndarray]], each: Each) -> float:
     """Accuracy of simulations of tests that were left out, as in cross_validation.held_out_accuracy."""
 
-    def predicted(group: tuple[str, np.ndarray]) -> tuple[FitData, Evaluation]:
-        rows = group[1]
+    def predicted(group: tuple[str, np.ndarray]) -> Prediction:
+        scheme, rows = group
         model = found.model.on(found.model.data.subset(rows))
-        point = found.evaluation.point.subset(rows)
-        evaluation = model.evaluate(replace(point, x=found.without(rows)))
-        for _ in range(LOCAL):
-            if not evaluation.found:
-                break
-            evaluation = model.evaluate(with_own_nuisances(model, evaluation))
-        return model.data, evaluation
+        point = replace(found.evaluation.point.subset(rows), x=found.without(rows))
+        return Prediction(scheme, rows, model.data, with_own_nuisances(model, point), model.effects)
 
-    left = found.model.data.observations - local_numbers(found.as_fit)
-    dof = sum(float(left[rows].sum()) for _, rows in groups)
-    return accuracy.of_responses(each(predicted, list(groups)), dof)
+    return accuracy_of(each(predicted, list(groups)), found.as_fit)
