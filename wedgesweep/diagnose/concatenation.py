@@ -5,7 +5,7 @@ as a step of one must not move another: first come those with a prior, part by p
 keeps all columns, and only the parts that it has tests of.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from functools import cached_property
 from itertools import pairwise
@@ -96,10 +96,23 @@ class Responses(NamedTuple):
     sizes: tuple[int, ...]
 
 
+def _of_parts(name: str, combined: Callable[[list], Any]) -> Any:
+    """A property of all parts, combined from that of each."""
+    return property(lambda self: combined(self._each(name)))
+
+
 class Concatenation(FitData):
     """Tests of several parts."""
 
     kind = "mixed"
+    measured_tests = _of_parts("measured_tests", sum)
+    observations = _of_parts("observations", np.concatenate)
+    dof = _of_parts("dof", np.concatenate)
+    power = _of_parts("power", np.concatenate)
+    model_misfit = _of_parts("model_misfit", np.concatenate)
+    input_gain_std = _of_parts("input_gain_std", max)
+    shares_nuisances = _of_parts("shares_nuisances", any)
+    recorded_forces = _of_parts("recorded_forces", lambda found: sum(found, ()))
 
     def __init__(self, parts: Sequence[FitData], layout: Layout | None = None) -> None:
         self._parts, self.layout = tuple(parts), layout or Layout.of(parts)
@@ -126,28 +139,8 @@ class Concatenation(FitData):
     def tests(self) -> int:
         return sum(self.layout.tests)
 
-    @property
-    def measured_tests(self) -> int:
-        return sum(self._each("measured_tests"))
-
-    @property
-    def observations(self) -> np.ndarray:
-        return np.concatenate(self._each("observations"))
-
-    @property
-    def dof(self) -> np.ndarray:
-        return np.concatenate(self._each("dof"))
-
-    @property
-    def power(self) -> np.ndarray:
-        return np.concatenate(self._each("power"))
-
     def power_of(self, response: Responses) -> np.ndarray:
         return np.concatenate(self._each("power_of", each=response.parts))
-
-    @property
-    def model_misfit(self) -> np.ndarray:
-        return np.concatenate(self._each("model_misfit"))
 
     @property
     def nuisance_std(self) -> np.ndarray:
@@ -158,14 +151,6 @@ class Concatenation(FitData):
     def noise_floor(self) -> float:
         weight = [float(part.observations.sum()) for part in self.parts]
         return float(np.sqrt(np.average(np.square(self._each("noise_floor")), weights=weight)))
-
-    @property
-    def input_gain_std(self) -> float:
-        return max(self._each("input_gain_std"))
-
-    @property
-    def shares_nuisances(self) -> bool:
-        return any(self._each("shares_nuisances"))
 
     @property
     def known(self) -> dict[str, tuple[float, float]]:
@@ -286,9 +271,6 @@ class Concatenation(FitData):
     def extra_nuisances(self, effects: Iterable[str]) -> np.ndarray:
         return np.concatenate(self._each("extra_nuisances", tuple(effects)))
 
-    def brings_nuisances(self, effect: str) -> bool:
-        return any(self._each("brings_nuisances", effect))
-
     def other_nuisances(self, model: Model, evaluation: Evaluation) -> np.ndarray | None:
         own = zip(self.parts, self._evaluations(evaluation), strict=True)
         found = [part.other_nuisances(model.on(part), each) for part, each in own]
@@ -350,10 +332,6 @@ class Concatenation(FitData):
     def motion(self, fit: Fit) -> Motion | None:
         found = self._each("motion", each=self.fits(fit))
         return None if None in found else Motion.joined(found)
-
-    @property
-    def recorded_forces(self) -> tuple[np.ndarray, ...]:
-        return tuple(force for part in self.parts for force in part.recorded_forces)
 
 
 def joined(parts: Sequence[Any]) -> FitData:

@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from math import log
+from operator import attrgetter
 from typing import TypeVar
 
 from wedgesweep.diagnose.fit_data import FitData
@@ -52,11 +53,8 @@ class Explanation:
         return self.fit.chi2 + self.parameter_penalty * self.fit.model.size
 
 
-def penalised(each: Explanation) -> float:
-    """Key by which explanations are ranked: ``Explanation.penalised``."""
-    return each.penalised
-
-
+# Key by which explanations are ranked.
+penalised: Callable[[Explanation], float] = attrgetter("penalised")
 Each = TypeVar("Each", Fit, Explanation)
 
 

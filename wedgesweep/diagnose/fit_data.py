@@ -228,10 +228,6 @@ class FitData(Protocol):
         """Number of nuisance parameters (T,) without a prior that these effects add to each test."""
         return np.zeros(self.tests, int)
 
-    def brings_nuisances(self, effect: str) -> bool:
-        """Whether a fit without this effect knows nothing of nuisance parameters that come with it."""
-        return False
-
     def other_nuisances(self, model: "Model", evaluation: Evaluation) -> np.ndarray | None:
         """Better nuisance parameters (T, N), if a fit cannot reach them from an evaluation by small steps.
 

@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from wedgesweep.diagnose.changes import SLIGHT
 from wedgesweep.diagnose.evaluation import Evaluation, Point
 from wedgesweep.diagnose.jacobian import conservative_jacobian, jacobian
 from wedgesweep.diagnose.model import TIGHT, Fit, Model
@@ -15,9 +16,9 @@ ITERATIONS, BRIEF = 25, 8
 # A fit has converged when the next step is predicted to reduce chi-squared by less than this, or by less than
 # this share of its excess: far from the data the last digit is of no use.
 CONVERGED, CONVERGED_SHARE = 0.02, 1e-3
-# Damping of the first step, the least damping, that at which a fit gives up, and the factors by which damping
+# Damping of the first step, the least damping, that at which a fit gives up, and the factor by which damping
 # rises after a step that failed and falls after one that did not.
-DAMPING, LEAST_DAMPING, MOST_DAMPING, UP, DOWN = 1e-3, 1e-9, 1e8, 8.0, 8.0
+DAMPING, LEAST_DAMPING, MOST_DAMPING, FACTOR = 1e-3, 1e-9, 1e8, 8.0
 # Eigenvalue of the scaled normal equations below which a combination of parameters is undetermined.
 UNDETERMINED = 1e-12
 # Largest step of one iteration, in scales of the parameters.
@@ -25,8 +26,6 @@ MAX_STEP = 3.0
 # Largest share of the tests whose nuisance parameters a step may leave where they are, and the least share of
 # the predicted gain that the other tests must make then.
 FEW_TESTS, LEAST_GAIN = 0.25, 0.5
-# A parameter hardly shows if its largest step changes chi-squared by less than this.
-UNNOTICED = 1.0
 
 
 class Step(NamedTuple):
@@ -57,12 +56,12 @@ def minimise(model: Model, start: Evaluation, iterations: int = ITERATIONS) -> F
                 break
             better = _better(model, evaluation, step) if predicted >= negligible else None
             if better is None:
-                damping *= UP
+                damping *= FACTOR
         if better is None:
             converged = predicted < negligible
             break
         gained = evaluation.chi2 - better.chi2
-        damping = max(damping / (DOWN if gained > 0.5 * predicted else 1.0), LEAST_DAMPING)
+        damping = max(damping / (FACTOR if gained > 0.5 * predicted else 1.0), LEAST_DAMPING)
         evaluation = better
     return Fit(model, evaluation, _covariance(matrix), converged)
 
@@ -108,7 +107,7 @@ def _parameter_step(model: Model, x: np.ndarray, equations: NormalEquations, dam
     free = ~(((x <= model.low) & (gradient > 0.0)) | ((x >= model.high) & (gradient < 0.0)))
     longest = MAX_STEP * model.scale
     step = _damped_solution(matrix, gradient, damping, free)
-    too_weak = free & (np.diag(matrix) * longest**2 < UNNOTICED) & (np.abs(step) > longest)
+    too_weak = free & (np.diag(matrix) * longest**2 < SLIGHT) & (np.abs(step) > longest)
     if too_weak.any():
         # A parameter that hardly shows must not shorten the step of the others.
         fixed = np.where(too_weak, np.clip(step, -longest, longest), 0.0)

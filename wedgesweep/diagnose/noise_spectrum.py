@@ -15,6 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from wedgesweep.diagnose.smoothing import TWO_SIDED
 from wedgesweep.periodogram import power_of, without_trend
 
 # Poles r that are tried, and iterations of a and b for each (multiplicative updates, see Fevotte and others,
@@ -25,8 +26,6 @@ UPDATES = 150
 WIDTH = 0.02
 # Log-likelihood that colour must gain over white noise.
 COLOURED = 3.0
-# Standard deviations by which the level is raised: one end of a 95 % interval.
-ONE_END = 1.96
 # Variance of the mean of some bins under a Hann window over that of as many independent ones.
 CORRELATED = 1.5
 # Share of the frequencies, the highest ones, whose power tells the level of a record at first.
@@ -155,7 +154,7 @@ def fit_spectra(tests: Sequence[Sequence[NoiseBins]], choice: Choice = MOST_NOIS
     mean = (bands.bins * bands.power) @ member / bins
     bands = bands._replace(known=bands.known + member @ (1e-12 * mean + 1e-300))
     found = _fitted(bands, member, np.array([_at_first(each) for each in own]))
-    raised = 0.0 if choice.loss == 0.0 or choice.least else ONE_END * np.sqrt(CORRELATED / bins)
+    raised = 0.0 if choice.loss == 0.0 or choice.least else TWO_SIDED * np.sqrt(CORRELATED / bins)
     best, *others = (
         [found.spectrum(place, level) for level in found.level[place] * (1.0 + raised)]
         for place in _chosen(found, choice)

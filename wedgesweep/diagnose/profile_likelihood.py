@@ -14,9 +14,9 @@ import numpy as np
 
 from wedgesweep.diagnose.least_squares import minimise, tight_refit
 from wedgesweep.diagnose.model import Fit
+from wedgesweep.diagnose.smoothing import TWO_SIDED
 
-# Half a 95 % interval of one parameter in standard deviations, and the rise of chi-squared at its ends.
-TWO_SIDED = 1.959964
+# Rise of chi-squared at the ends of a 95 % interval of one parameter.
 RISE = TWO_SIDED**2
 # An end is found where chi-squared has risen by at least this share of RISE, or after this many tries.
 RISE_SHARE, TRIES = 0.8, 5

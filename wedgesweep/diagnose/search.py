@@ -309,13 +309,18 @@ def single_fits(known: Explained) -> Explained:
         return one
 
     found: dict[str, SingleFit] = {k: one for k, one in search.each_effect(fitted).items() if one}
-    aligned = [one.data for effect, one in found.items() if search.data.brings_nuisances(effect)]
+    aligned = [one.data for effect, one in found.items() if _brings_alignment(search.data, effect)]
     return Explained(
         replace(search, effects=tuple(found), data=aligned[-1] if aligned else search.data),
         base,
         [one.explanation for one in found.values()],
         {effect: one.scan for effect, one in found.items()},
     )
+
+
+def _brings_alignment(data: FitData, effect: str) -> bool:
+    """Whether responses depend on the alignment of the data with this effect only."""
+    return data.needs_alignment((effect,)) and not data.needs_alignment(())
 
 
 def single_fit(search: Search, effect: str, base: Fit) -> SingleFit:
@@ -326,7 +331,7 @@ def single_fit(search: Search, effect: str, base: Fit) -> SingleFit:
     evaluations = best_per_value(scan)
     implausible = data.implausible(base.point) or bool(base.implausible)
     own_numbers = bool(model.hypothesis.switches and data.uncertain)
-    apart = implausible or data.brings_nuisances(effect) or model.hypothesis.switches
+    apart = implausible or _brings_alignment(data, effect) or model.hypothesis.switches
     if search.uses("starts as stated", apart):
         # Fitted without the effect, the base model's own parameters are, or may be, far from the truth.
         fresh = search.nuisances_searched(rough, [model.start(None, x) for x in points])
@@ -344,7 +349,7 @@ def single_fit(search: Search, effect: str, base: Fit) -> SingleFit:
     limit = CUT_OFF * float(base.evaluation.chi2_by_test[rows].sum()) if drops else inf
     waits = search.uses("far fits wait", data.shares_nuisances)
     fit = best_of(model, evaluations, schedule, limit, rows, waits=waits)
-    if data.brings_nuisances(effect):
+    if _brings_alignment(data, effect):
         fit = _aligned(search, fit)
     return SingleFit(search.explanation(fit), scan, fit.model.data)
 

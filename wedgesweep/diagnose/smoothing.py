@@ -14,6 +14,7 @@ from scipy import signal
 from scipy.interpolate import make_interp_spline
 from scipy.ndimage import median_filter
 from scipy.optimize import brentq
+from scipy.special import ndtri
 
 from wedgesweep.measured.kinds import HIGHEST
 
@@ -31,16 +32,14 @@ LOUD = 0.1
 WIDER = 2.0
 # Part of a record at either end, in periods of the cut-off, in which the filter has not settled.
 SETTLING = 2.5
-# Median of the absolute value of a normal variable over its standard deviation.
-MEDIAN = 0.6745
 # A step from one sample to the next is part of a jump if it is off by more than so many standard deviations.
 JUMP = 6.0
 # Beyond so many standard deviations a value is an outlier, which is found in so many rounds.
 OUTLIER, CLIPPINGS = 4.0, 4
 # Share of a record that must be free of outliers and their neighbours for the latter to be left out.
 LEAST_KEPT = 0.25
-# Ends of a 95 % interval in standard deviations.
-TWO_SIDED = 1.96
+# Ends of a 95 % interval in standard deviations, and the median of the absolute value of a normal variable.
+TWO_SIDED, MEDIAN = float(ndtri(0.975)), float(ndtri(0.75))
 # Number of frequencies at which a filter's gain is evaluated.
 GRID = 4096
 

@@ -1,6 +1,6 @@
 """The step of a diagnosis that fits an empirical force, and says whether it predicts better than any name."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import inf
 
@@ -8,6 +8,7 @@ import numpy as np
 
 from wedgesweep.diagnose import accuracy
 from wedgesweep.diagnose.cross_validation import (
+    Each,
     Prediction,
     accuracy_of,
     held_out_groups,
@@ -31,9 +32,6 @@ OFFERED = 0.9
 # It is fitted again with the weights of the accuracy reached, at most this many times, as long as that gets
 # smaller by this factor: far from the tests a force is found step by step.
 REFITS, SMALLER = 8, 0.9
-
-# Maps a function over a list, perhaps in threads.
-Each = Callable[[Callable, list], list]
 
 
 @dataclass(frozen=True)

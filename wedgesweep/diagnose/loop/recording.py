@@ -18,6 +18,7 @@ from wedgesweep.diagnose.loop import motion_noise
 from wedgesweep.diagnose.loop.force_noise import KnownNoise, of_force
 from wedgesweep.diagnose.loop.motion_noise import Derivatives
 from wedgesweep.diagnose.noise_spectrum import FROM_REPEATS, NoiseSpectrum, of_noise
+from wedgesweep.diagnose.sampled_data import MOST_BLOCKS
 from wedgesweep.diagnose.smoothing import LowPass, Motion, chosen_cutoff, motion, white_noise
 from wedgesweep.effects import channel_delay, force_gain, merge
 from wedgesweep.errors import InputError
@@ -34,8 +35,6 @@ LEAST_CHANGE = 1e-9
 FEWEST_KNOWN = 24
 # A reversal counts if the velocity goes beyond this share of its peak on both sides.
 REVERSAL = 0.1
-# Blocks of a record that are left out in turn, at most.
-MOST_BLOCKS = 12
 # Standard deviation of the deflection of bristles at the start of a record, which nobody knows, as a share of
 # the largest one: anything between both ends is as likely.
 DEFLECTED = 1.0 / sqrt(3.0)

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from wedgesweep.diagnose.model import Fit
-from wedgesweep.diagnose.profile_likelihood import TWO_SIDED
+from wedgesweep.diagnose.smoothing import TWO_SIDED
 from wedgesweep.effects import EFFECTS
 from wedgesweep.quantity import Quantity
 

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple, Self
 
 import numpy as np
 
+from wedgesweep.diagnose.changes import SLIGHT
 from wedgesweep.diagnose.evaluation import Comparison, Evaluation, NuisanceParameter, Point, Scenario
 from wedgesweep.diagnose.fit_data import Arrays, FitData, Motion
 from wedgesweep.diagnose.model import Fit, Model
@@ -34,8 +35,6 @@ AMPLITUDE = NuisanceParameter(step=2e-3, max_step=0.1)
 # Effects that only a recorded input, or a recorded force, shows.
 OF_RECORDED = ("input_gain", "force_gain", "channel_delay")
 TONE_PHASE = NuisanceParameter(step=1e-2, max_step=0.3)
-# A record was low-passed before it was sampled if leaving out aliases takes this much off chi-squared.
-FILTERED = 1.0
 # A bolster that moves less than this share of the measured motion sticks.
 STICKS = 0.01
 # A stated amplitude that a fit changes by more than this (relative) makes up for a wrong model.
@@ -47,8 +46,6 @@ CHANGED = 1.1
 # Newton steps from the best start phase without a covariance, and in rad their largest length and a
 # negligible one.
 PHASE_STEPS, PHASE_LENGTH, NEGLIGIBLE = 12, 0.05, 1e-7
-# Frequencies or amplitudes closer than this (relative) are left out together in cross-validation.
-SAME_GROUP = 0.02
 
 
 class SteadyResponse(NamedTuple):
@@ -195,9 +192,10 @@ class HarmonicData(WhitenedHarmonics, FitData):
         if not aliases.any():
             return phase, aliases
         left = self.whitened - self.rotated(whitened, phase)
+        # A record was low-passed before it was sampled if it fits better without aliases.
         both = np.stack([left - self.whiten(aliases), left])
         with_aliases, without = self.squared(both)
-        aliases[with_aliases > without + FILTERED] = 0.0
+        aliases[with_aliases > without + SLIGHT] = 0.0
         phase = self.start_phase(whitened, self.whiten(aliases))
         return phase, np.where(aliases != 0.0, self.aliases(simulated, phase), 0.0)
 
@@ -299,9 +297,6 @@ class HarmonicData(WhitenedHarmonics, FitData):
     def extra_nuisances(self, effects: Iterable[str]) -> np.ndarray:
         """One in each test with a tone that these effects explain: its phase."""
         return np.array([self.has_tone(effects) and s.has_tone for s in self.spectra])
-
-    def brings_nuisances(self, effect: str) -> bool:
-        return effect == TONE
 
     def other_nuisances(self, model: Model, evaluation: Evaluation) -> np.ndarray | None:
         effects, point = model.effects, evaluation.point
@@ -418,12 +413,12 @@ def stated(data: HarmonicData) -> Scenario:
 
 
 def groups_of_equal(values: np.ndarray) -> list[np.ndarray]:
-    """Indices of values that are the same to within SAME_GROUP, group by group."""
+    """Indices of values that are the same to within tone.ALIKE, group by group."""
     order = np.argsort(values)
     found = [[order[0]]]
     for place in order[1:]:
         # Compared with the first of the group: in a fine sweep each is close to its neighbour.
-        if np.log(values[place] / values[found[-1][0]]) > SAME_GROUP:
+        if np.log(values[place] / values[found[-1][0]]) > tone.ALIKE:
             found.append([])
         found[-1].append(place)
     return [np.array(group) for group in found]

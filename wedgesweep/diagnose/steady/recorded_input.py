@@ -21,6 +21,7 @@ from wedgesweep.diagnose.fit_data import INPUT_GAIN
 from wedgesweep.diagnose.model import TIGHT
 from wedgesweep.diagnose.steady.harmonic_data import AMPLITUDE, HarmonicData, Simulated
 from wedgesweep.diagnose.steady.spectra import Spectrum
+from wedgesweep.diagnose.steady.stated_input import LEAST_STEP
 from wedgesweep.effects.channel_delay import NAME as DELAY
 
 # Effects of sensors: the number that is set, and its value without the effect.
@@ -30,9 +31,6 @@ SENSORS = (("displacement_gain", "scale", 1.0), ("velocity_lag", "time", 0.0))
 DOUBTFUL, CERTAIN = 4.0, 12.0
 # A harmonic counts by the share of its square that exceeds this many times its noise.
 ABOVE_NOISE = 2.0
-# The finite-difference step of a coefficient is its standard deviation, but at least this share of the
-# fundamental over its order: the error of simulations would hide smaller steps.
-LEAST_STEP = 1e-4
 
 
 class InputHarmonics(NamedTuple):

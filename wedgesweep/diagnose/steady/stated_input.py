@@ -34,8 +34,8 @@ if TYPE_CHECKING:
 
 # Orders of the harmonics that inputs have.
 ORDERS = {"second": 2, "third": 3}
-# The finite-difference step of a harmonic is the standard deviation of its real part, but at least this over
-# its order: the error of simulations would hide smaller steps.
+# The finite-difference step of a harmonic of an input is the standard deviation of its real part, but at
+# least this share of the fundamental over its order: the error of simulations would hide smaller steps.
 LEAST_STEP = 1e-4
 
 

@@ -24,8 +24,8 @@ FINE = 4
 LOWEST = 1.0
 # Share of a tone that must not be a harmonic for its power to count in full.
 NOT_HARMONIC = 0.05
-# Tests whose frequencies differ by less than this share have the same frequency.
-SAME_FREQUENCY = 0.02
+# Frequencies or amplitudes of tests that differ by less than this share are the same.
+ALIKE = 0.02
 # Least curvature of the power over a step of the grid: below it the frequency is undetermined.
 LEAST_CURVATURE = 1e-3
 # Phases at which a fit of the phase begins.
@@ -52,7 +52,7 @@ def find(spectra: Sequence[Spectrum], lowest: float = LOWEST) -> Tone | None:
     tone cannot be told from half its multiples.
     """
     frequency = np.array([s.frequency for s in spectra])
-    alike = np.abs(np.log(frequency / frequency[:, None])) < SAME_FREQUENCY
+    alike = np.abs(np.log(frequency / frequency[:, None])) < ALIKE
     longest = max(s.duration for s in spectra)
     highest = max(BAND / s.interval for s in spectra)
     grid = np.arange(lowest, highest, 1.0 / longest / FINE)

@@ -13,7 +13,7 @@ from wedgesweep.errors import InputError
 from wedgesweep.measured import Measurement, TestRecord
 
 # Parts of a record, in the loudest of which its motion must be larger than its noise.
-PARTS, TINY = 8, 1e-300
+PARTS = 8
 
 
 def transient_data(measurement: Measurement) -> TransientData:
@@ -48,7 +48,7 @@ def _refuse_noise(file: str, channels: np.ndarray, spectra: list[NoiseSpectrum])
     """Raise InputError if the motion is smaller than the noise of all channels, where it is largest."""
     parts = [[part.std() for part in np.array_split(channel, PARTS)] for channel in channels]
     shares = [
-        spectrum.std / max(float(np.sqrt(max(max(own) ** 2 - spectrum.std**2, 0.0))), TINY)
+        spectrum.std / max(float(np.sqrt(max(max(own) ** 2 - spectrum.std**2, 0.0))), 1e-300)
         for own, spectrum in zip(parts, spectra, strict=True)
     ]
     if min(shares) > 1.0:
