@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from wedgesweep import figures
 from wedgesweep.__main__ import THREADS
 
 ROOT = Path(__file__).parents[1]
@@ -15,6 +16,8 @@ KERNELS = ROOT / ".kernels"
 
 # Threads of numpy's libraries stand in each other's way on a busy machine.
 os.environ.update(dict.fromkeys(THREADS, "1"))
+# Pictures are looked at by nobody here.
+figures.DOTS_PER_INCH = 40
 # Before wedgesweep.compiled is imported, which reads it. Its folders in there are named for the sources.
 os.environ["WEDGESWEEP_CACHE_DIR"] = str(KERNELS)
 
@@ -50,6 +53,12 @@ def _compile_once() -> None:
 with suppress(OSError):  # a checkout that cannot be written to
     KERNELS.mkdir(exist_ok=True)
     _compile_once()
+
+
+@pytest.fixture
+def empty_pictures(monkeypatch):
+    """Pictures are empty files: to write them takes longest, and is tested where they are drawn."""
+    monkeypatch.setattr(figures, "save", lambda figure, path: Path(path).touch())
 
 
 @pytest.hookimpl(tryfirst=True)

@@ -247,6 +247,7 @@ def test_a_response_that_would_lift_off_has_no_numbers(hypothesis):
     assert np.isinf(observations.of_tests(slow, fast)[1, 2:]).all()
 
 
+@pytest.mark.acceptance
 def test_a_recording_shows_one_period_like_all_others():
     """On a fixture with hardly any damping this bolster answers with twice the input's period."""
     row = BY_NAME["fixture-resonance"].record(STATIC_DYNAMIC, -4.0, np.array([0.5, 0.0]))

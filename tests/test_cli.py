@@ -13,15 +13,13 @@ import xarray as xr
 
 from tests import fixture_dataset, fixture_diagnosis, small_sweep
 from tests.command import invoke
-from tests.small_sweep import CONFIG, LOCKED
+from tests.small_sweep import FAST, LOCKED
 from wedgesweep import config, figures, files
-from wedgesweep.cli import cli, messages
+from wedgesweep.cli import cli
 from wedgesweep.cli.failure import _failure
-from wedgesweep.cli.progress import ProgressReport
 from wedgesweep.figures import friction_laws, phase_portrait
-from wedgesweep.formatting import duration, size
 
-FEW = CONFIG.replace("1.1, ", "")
+FEW = FAST.replace("1.1, ", "")
 PNG = b"\x89PNG"
 
 
@@ -89,9 +87,10 @@ def test_init_writes_a_config_that_is_valid(here):
 
 
 def test_schema(here):
-    assert json.loads(invoke("schema")) == config.schema()
+    printed = invoke("schema")
+    assert json.loads(printed) == config.schema()
     invoke("schema", "-o", "schema.json")
-    assert json.loads((here / "schema.json").read_text()) == config.schema()
+    assert (here / "schema.json").read_text() == printed
 
 
 def test_check_tells_cases_time_and_size(here):
@@ -188,7 +187,7 @@ def test_fail_fast_keeps_what_is_finished(here):
 
 
 def test_case_timeout(here):
-    told = run("few.toml", "--case-timeout", 1e-6, code=1)
+    told = run("few.toml", "--case-timeout", 1e-6, "--solver", "radau", code=1)
     assert "time_limit: gave up after 1e-06 s" in told
     assert "and " in told  # no more than some are listed
     assert told.count("gave up") == 5
@@ -402,9 +401,7 @@ def test_a_case_takes_the_place_of_no_other_data(here):
 
 
 def test_another_solver_that_cannot_do_what_is_asked_is_told_with_its_file(here):
-    (here / "steady.toml").write_text(
-        FEW.replace("settle_periods = 3", 'method = "event-driven"\nsettle = "steady"')
-    )
+    (here / "steady.toml").write_text(FEW.replace("settle_periods = 3", 'settle = "steady"'))
     assert 'steady.toml: solver "radau": solver.settle' in run("steady.toml", "--solver", "radau", code=2)
 
 
@@ -420,12 +417,14 @@ def test_an_error_of_the_system_without_a_number_is_told():
     assert str(_failure(TimeoutError())) == "TimeoutError"
 
 
+@pytest.mark.usefixtures("empty_pictures")
 def test_plot_all(here, drawn_dataset):
     invoke("plot", "all", drawn_dataset, "-o", "new/figures", "--beta", 0.4)
     made = {path.name for path in (here / "new" / "figures").iterdir()}
     assert made == {f"{kind}.png" for kind in figures.DESCRIPTIONS}
 
 
+@pytest.mark.usefixtures("empty_pictures")
 def test_picks_off_the_grid_are_told_and_those_far_off_are_errors(here, drawn_dataset):
     to = ("-o", "figure.png")
     assert invoke("plot", "response", drawn_dataset, *to, "--beta", 0.4) == "wrote figure.png\n"
@@ -459,22 +458,20 @@ def test_what_lies_outside_of_validity_is_counted_and_told(here, drawn_dataset):
 def test_static_below_dynamic_friction_is_told(here):
     assert "friction.static" not in invoke("check", "few.toml")
     (here / "few.toml").write_text(FEW + "\n[friction]\nstatic = 0.1\ndynamic = 0.3\n")
-    for told in (invoke("check", "few.toml"), run("few.toml")):
-        assert "friction.static = 0.1 is below friction.dynamic = 0.3: friction rises once" in told
+    told = invoke("check", "few.toml")
+    assert "friction.static = 0.1 is below friction.dynamic = 0.3: friction rises once" in told
 
 
+@pytest.mark.usefixtures("empty_pictures")
 def test_plot_of_a_diagnosis(here, drawn_dataset):
     fixture_diagnosis.write(here / "found", "tied", tests=2)
     assert invoke("plot", "candidates", "found") == "wrote found/candidates.png\n"
     assert invoke("plot", "misfit", "found", "--format", "svg", "-o", "m.svg") == "wrote m.svg\n"
     assert "skipped gain: no test was held out" in invoke("plot", "all", "found", "-o", "figures")
-    assert (here / "figures" / "waveforms.png").read_bytes().startswith(PNG)
+    assert (here / "figures" / "waveforms.png").exists()
     for arguments, words in (
-        (["misfit", drawn_dataset], "not a directory; misfit draws what 'wedgesweep diagnose -o DIR' left"),
-        (
-            ["stick-map", "found"],
-            "a directory; stick-map draws the dataset of a run, a diagnosis",
-        ),
+        (["misfit", drawn_dataset], "no figure 'misfit' of these data; there are amplitude-ratio, "),
+        (["stick-map", "found"], "no figure 'stick-map' of these data; there are candidates, "),
         (["gain", "found"], "gain: no test was held out"),
         (["misfit", "found", "--beta", 1], "misfit: takes no --beta"),
         (["misfit", "figures"], "figures/diagnosis.json: no such file"),
@@ -482,6 +479,7 @@ def test_plot_of_a_diagnosis(here, drawn_dataset):
         assert words in invoke("plot", *arguments, code=2)
 
 
+@pytest.mark.usefixtures("empty_pictures")
 def test_plot_all_says_what_does_not_suit(here):
     fixture_dataset.as_cases(fixture_dataset.build()).to_netcdf("cases.nc")
     told = invoke("plot", "all", "cases.nc")
@@ -491,9 +489,9 @@ def test_plot_all_says_what_does_not_suit(here):
     assert "not the dataset of a sweep" in invoke("plot", "all", "measured.nc", code=2)
 
 
+@pytest.mark.usefixtures("empty_pictures")
 def test_a_sweep_without_waveforms(here):
-    text = FEW.replace("[solver]", '[solver]\nmethod = "event-driven"') + "keep_waveforms = false\n"
-    (here / "few.toml").write_text(text)
+    (here / "few.toml").write_text(f"{FEW}keep_waveforms = false\n")
     assert "(from 16 cases run now)" in invoke("check", "few.toml")
     assert "16 ok" in run("few.toml")
     assert "16 cases: 16 ok" in invoke("status", "few.nc")
@@ -505,51 +503,5 @@ def test_a_sweep_without_waveforms(here):
     )
     # One case is run for its trajectory.
     invoke("case", "few.toml", "--beta", 0.77, "--amplitude", 0.9, "-o", "one")
-    assert (here / "one.png").read_bytes().startswith(PNG)
+    assert (here / "one.png").exists()
     assert xr.load_dataset("one.nc").sizes["phase"] == 64
-
-
-def records(*statuses):
-    return np.array([(status,) for status in statuses], [("status", "i1")])
-
-
-@pytest.fixture
-def clock(monkeypatch):
-    """Seconds that pass where the test says so."""
-    now = [0.0]
-    monkeypatch.setattr("wedgesweep.cli.progress.perf_counter", lambda: now[0])
-    return now
-
-
-def test_a_short_sweep_tells_only_its_end(capfd, clock):
-    messages.begin()
-    progress = ProgressReport()
-    progress.cases(records(), 10)
-    for _ in range(10):
-        clock[0] += 0.05
-        progress.cases(records(0), 10)
-    assert capfd.readouterr().err.splitlines() == ["10 cases", "10/10 cases, 0.5 s"]
-
-
-def test_log_lines_tell_counts_failures_and_time_left(capfd, clock):
-    messages.begin()
-    progress = ProgressReport()
-    for total, kept in ((40, 10), (20, 0)):
-        progress.cases(records(*[0] * kept), total)
-        for done in range(kept + 1, total + 1):
-            clock[0] += 1.0
-            progress.cases(records(int(done == kept + 1)), total)
-    lines = capfd.readouterr().err.splitlines()
-    assert lines[0] == "40 cases, 10 of them from an earlier run"
-    assert lines[1].startswith("14/40 cases, 1 failed, ")
-    assert lines[1].endswith(" left")
-    assert lines[8].startswith("40/40 cases, 1 failed, ")
-    assert lines[9] == "20 cases"
-    assert len(lines) == 10 + 10
-
-
-def test_words():
-    assert [duration(seconds) for seconds in (0.34, 59.6, 119, 600, 7500)] == [
-        *("0.3 s", "60 s", "119 s", "10 min", "2 h 5 min")
-    ]
-    assert [size(count) for count in (3, 24.6e6, 999.7e3, 1.23e9)] == [*("3 B", "25 MB", "1 MB", "1.2 GB")]

@@ -61,3 +61,12 @@ def test_an_estimate_has_the_digits_that_its_interval_allows():
 )
 def test_keys_become_a_name_and_a_unit(key, name, unit):
     assert phrases.split_key(key) == (name, unit)
+
+
+def test_times_and_sizes():
+    assert [formatting.duration(seconds) for seconds in (0.34, 59.6, 119, 600, 7500)] == [
+        *("0.3 s", "60 s", "119 s", "10 min", "2 h 5 min")
+    ]
+    assert [formatting.size(count) for count in (3, 24.6e6, 999.7e3, 1.23e9)] == [
+        *("3 B", "25 MB", "1 MB", "1.2 GB")
+    ]

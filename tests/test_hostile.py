@@ -18,8 +18,6 @@ from wedgesweep.processes import apart
 from wedgesweep.simulate import Settings
 from wedgesweep.sweep import cases
 
-LONG = CONFIG.replace("settle_periods = 3", "settle_periods = 40")
-
 
 @pytest.fixture
 def here(tmp_path, monkeypatch):
@@ -141,11 +139,10 @@ def test_a_null_character_in_a_path(here):
 
 
 @pytest.mark.parametrize("fresh", [(), ("--fresh",)])
-@pytest.mark.parametrize("content", ["mine", "mine\n", "{}\n", '{"config": 1}\n'])
-def test_a_foreign_file_in_place_of_the_journal_stays(here, content, fresh):
-    (here / "small.nc.partial").write_text(content)
+def test_a_foreign_file_in_place_of_the_journal_stays(here, fresh):
+    (here / "small.nc.partial").write_text("mine\n")
     assert "small.nc.partial: not the journal of a sweep" in invoke("run", "small.toml", *fresh, code=2)
-    assert (here / "small.nc.partial").read_text() == content
+    assert (here / "small.nc.partial").read_text() == "mine\n"
 
 
 def test_what_a_killed_process_left_is_removed_and_nothing_else(here):

@@ -180,6 +180,12 @@ UNLOADED = {
     "from wedgesweep.sweep import outcomes; from wedgesweep.figures import models": (
         *("matplotlib", "numba", "scipy", "wedgesweep.config"),
     ),
+    "from wedgesweep.figures import DESCRIPTIONS; assert DESCRIPTIONS": (
+        *OPTIONAL,
+        "scipy",
+        "numba",
+        "numpy",
+    ),
     "import wedgesweep.config": (*OPTIONAL, "wedgesweep.solvers.radau", "wedgesweep.solvers.event_driven"),
 }
 

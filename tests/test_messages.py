@@ -1,5 +1,6 @@
 """What commands say beside their results: compilation, progress; --quiet and --verbose."""
 
+import numpy as np
 import pytest
 
 from tests import small_sweep
@@ -59,6 +60,37 @@ def test_quiet_keeps_warnings_and_errors(here):
     assert "the nearest one there is" in invoke(*plot, "--beta", 0.31)
     assert "absent.toml: No such file" in invoke("check", "absent.toml", "--quiet", code=2)
     assert "contradict each other" in invoke(*plot, "--verbose", code=2)
+
+
+def records(*statuses):
+    return np.array([(status,) for status in statuses], [("status", "i1")])
+
+
+def test_a_short_sweep_tells_only_its_end(capfd, clock):
+    messages.begin()
+    progress = ProgressReport()
+    progress.cases(records(), 10)
+    for _ in range(10):
+        clock[0] += 0.05
+        progress.cases(records(0), 10)
+    assert lines(capfd) == ["10 cases", "10/10 cases, 0.5 s"]
+
+
+def test_log_lines_tell_counts_failures_and_time_left(capfd, clock):
+    messages.begin()
+    progress = ProgressReport()
+    for total, kept in ((40, 10), (20, 0)):
+        progress.cases(records(*[0] * kept), total)
+        for done in range(kept + 1, total + 1):
+            clock[0] += 1.0
+            progress.cases(records(int(done == kept + 1)), total)
+    told = lines(capfd)
+    assert told[0] == "40 cases, 10 of them from an earlier run"
+    assert told[1].startswith("14/40 cases, 1 failed, ")
+    assert told[1].endswith(" left")
+    assert told[8].startswith("40/40 cases, 1 failed, ")
+    assert told[9] == "20 cases"
+    assert len(told) == 10 + 10
 
 
 def report(stage, total, seconds, clock):

@@ -61,7 +61,7 @@ def plain(text):
     return text.replace(formatting.NO_BREAK, " ").replace("\N{NARROW NO-BREAK SPACE}", " ")
 
 
-def _caption(figures, name, caption, tests=None):
+def _caption(figures, name, caption="", tests=None):
     return html.paragraph(caption)
 
 

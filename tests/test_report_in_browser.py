@@ -36,7 +36,7 @@ def tab():
 @pytest.fixture(scope="module")
 def page(tmp_path_factory):
     directory = tmp_path_factory.mktemp("named")
-    fixture_diagnosis.write(directory, "named", tests=8)
+    fixture_diagnosis.write(directory, "named", tests=3)
     return report.write(directory)
 
 

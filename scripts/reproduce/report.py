@@ -74,7 +74,7 @@ def _cases_of(name: str, run: Run, law: str) -> dict[str, Any]:
 
 def _failed(run: Run) -> list[str]:
     found = outcomes.of_dataset(run.ds)
-    return [str(found[place]) for place in found.failures.tolist()]
+    return [found.described(place) for place in found.failures.tolist()]
 
 
 def _provenance(run: Run) -> dict[str, Any]:

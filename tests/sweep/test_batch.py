@@ -43,10 +43,6 @@ def test_chunks_change_no_bit(tmp_path, expected, monkeypatch, chunk):
     assert max(told) == min(chunk, small_sweep.CASES)
 
 
-def test_two_jobs_change_no_bit(tmp_path, expected):
-    assert_same_numbers(run(tmp_path, n_jobs=2), expected)
-
-
 def test_order_of_the_cases_changes_no_bit(tmp_path, expected):
     listed = small_sweep.sweep(tmp_path).config.case_list()
     order = random.Random(3).sample(range(len(listed)), len(listed))
@@ -62,7 +58,8 @@ def test_order_of_the_cases_changes_no_bit(tmp_path, expected):
 
 
 def test_agrees_with_radau_in_every_variable(tmp_path):
-    few = EVENT_DRIVEN.replace("1.1, ", "").replace("[solver]", "[solver]\nrtol = 1e-9")
+    few = EVENT_DRIVEN.replace("1.1, ", "").replace("0.02, 0.2, ", "")
+    few = few.replace("[solver]", "[solver]\nrtol = 1e-9")
     ours, radaus = run(tmp_path, few), run(tmp_path, few.replace('"event-driven"', '"radau"'))
     assert set(ours) == set(radaus)
     assert (ours["status"] == radaus["status"]).all()
@@ -142,9 +139,10 @@ def test_what_does_not_repeat_in_time_has_period_0_and_numbers(tmp_path):
 
 
 def test_locked_cases_have_a_status_and_no_numbers(tmp_path):
-    for settle in ("settle_periods = 3", 'settle = "steady"'):
-        text = LOCKED.replace("[solver]", '[solver]\nmethod = "event-driven"')
-        ds = run(tmp_path, text.replace("settle_periods = 3", settle)).sel(friction_law="coulomb").squeeze()
+    short = "settle_periods = 3"
+    for method, settle in (("radau", short), ("event-driven", short), ("event-driven", 'settle = "steady"')):
+        text = LOCKED.replace(short, f'method = "{method}"\n{settle}')
+        ds = run(tmp_path, text).sel(friction_law="coulomb").squeeze()
         assert STATUSES[ds["status"].item()] == "locked"
         assert "not unique" in ds["message"].item()
         assert ds["period"].item() == -1

@@ -5,12 +5,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
 
 from tests import small_sweep
+from tests.command import invoke
 from tests.small_sweep import LOCKED, assert_same_numbers
 from wedgesweep import response
-from wedgesweep.cli import cli
 from wedgesweep.solvers import radau
 from wedgesweep.solvers.trajectory import Window
 from wedgesweep.sweep import batch, chunks, continuation, dataset, journal, variables
@@ -198,21 +197,14 @@ def test_the_flag_says_what_it_means(steep):
     assert "1000 steady_tolerance" in flag["long_name"]
 
 
+@pytest.mark.usefixtures("empty_pictures")
 def test_figures_and_the_command_line(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     Path("c.toml").write_text(STEEP)
-    assert invoked("run c.toml --n-jobs 1").exit_code == 0
-    drawn = invoked("plot all c.nc -o figures")
-    assert drawn.exit_code == 0, drawn.output
+    invoke("run", "c.toml", "--n-jobs", 1)
+    invoke("plot", "all", "c.nc", "-o", "figures")
     assert len(list(Path("figures").iterdir())) >= 5
     # One case has no neighbours: it runs from rest.
-    one = invoked("case c.toml --beta 2.5 --amplitude 0.0311 -o one")
-    assert one.exit_code == 0, one.output
+    invoke("case", "c.toml", "--beta", 2.5, "--amplitude", 0.0311, "-o", "one")
     assert not CONTINUED & set(dataset.read(Path("one.nc")))
-    refused = invoked("run c.toml --solver radau")
-    assert refused.exit_code == 2
-    assert "solver.continuation" in refused.output
-
-
-def invoked(command):
-    return CliRunner().invoke(cli, command.split())
+    assert "solver.continuation" in invoke("run", "c.toml", "--solver", "radau", code=2)

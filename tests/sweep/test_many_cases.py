@@ -171,6 +171,7 @@ def test_a_dataset_of_many_cases_is_summed_up_in_columns(tmp_path):
     found = outcomes.of_dataset(dataset.assemble(records, coords, dims, {}, labels.long_names(sweep.config)))
     assert {str(outcome): count for outcome, count in found.counts.items()} == {"ok": 89_998, "locked": 2}
     assert (found.unsettled, found.lifted, found.failures.tolist()) == (6, 0, [5, 70_000])
-    assert found[70_000].case.law == "coulomb"
-    assert str(found[70_000]).endswith("mm: locked: locks")
-    assert found[70_000].case == sweep.config.sweep.case(70_000)
+    case, unit, _ = found.describe_case(70_000)
+    assert (case, unit) == (sweep.config.sweep.case(70_000), "m")
+    assert found.described(70_000).startswith("coulomb, beta ")
+    assert found.described(70_000).endswith("mm: locked: locks")

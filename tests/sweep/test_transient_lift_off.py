@@ -54,6 +54,7 @@ def test_motions_that_keep_contact_are_those_of_bilateral_joints(given):
         assert (open_[name] == 0.0).all()
 
 
+@pytest.mark.acceptance
 @pytest.mark.parametrize("restitution", [0.0, 0.4])
 def test_friction_and_impacts_lose_what_a_release_stores(restitution):
     """The bolster is let go from 10 mm and ends at rest: the springs' energy has gone into both."""
@@ -71,7 +72,9 @@ def test_friction_and_impacts_lose_what_a_release_stores(restitution):
     assert float(ds["dissipated_energy"] + ds["impact_energy"]) == pytest.approx(stored, rel=1e-6)
 
 
-@pytest.mark.parametrize(("joints", "outside"), [("unilateral", 0), ("bilateral", 3)])
+@pytest.mark.parametrize(
+    ("joints", "outside"), [pytest.param("unilateral", 0, marks=pytest.mark.acceptance), ("bilateral", 3)]
+)
 def test_an_unfinished_sweep_tells_what_lies_outside_of_the_model(tmp_path, joints, outside):
     sweep = Sweep(config.parse(study(RELEASE, joints)), tmp_path / "part.nc")
     with Journal(sweep.journal_path, sweep.dtype, sweep.journal_header) as journal:
@@ -79,6 +82,7 @@ def test_an_unfinished_sweep_tells_what_lies_outside_of_the_model(tmp_path, join
     assert unfinished.outcomes_of(tmp_path / "part.nc").lifted == outside
 
 
+@pytest.mark.acceptance
 def test_faces_push_or_carry_nothing():
     ds = solved(RELEASE, "unilateral")
     for name in ("normal_force_column", "normal_force_bolster"):
@@ -86,6 +90,7 @@ def test_faces_push_or_carry_nothing():
         assert (ds[name] == 0.0).any()
 
 
+@pytest.mark.acceptance
 def test_the_open_phases_are_told(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "open.toml").write_text(study(RELEASE, "unilateral"))

@@ -6,6 +6,7 @@ import xarray as xr
 
 from tests.command import invoke
 from wedgesweep import config, figures
+from wedgesweep.config.physics import physics
 from wedgesweep.figures.transient import loop, ring_down
 from wedgesweep.sweep import unfinished
 from wedgesweep.sweep.journal import Journal
@@ -99,7 +100,7 @@ def test_an_interrupted_sweep_is_resumed(folder):
     part = Sweep(config.load("release.toml"), folder / "part.nc")
     with Journal(part.journal_path, part.dtype, part.journal_header) as journal:
         journal.append(records)
-    assert unfinished.outcomes_of(folder / "part.nc")[1].case.amplitude == 1.0
+    assert unfinished.outcomes_of(folder / "part.nc").describe_case(1)[0].amplitude == 1.0
     drawn = unfinished.dataset_of(folder / "part.nc")
     assert (drawn["status"] == 0).sum() == 2
     assert "2 ok, 4 remaining" in invoke("status", "part.nc")
@@ -153,10 +154,9 @@ def test_an_exported_row_has_its_scale(folder):
     )
 
 
-def test_what_does_not_decay_by_a_constant_friction_has_no_such_decay(folder):
+def test_what_does_not_decay_by_a_constant_friction_has_no_such_decay():
     text = (HEAD + RELEASE + TAIL).replace("[sweep]", "[effects.ageing]\nrate = 0.02\ntime_s = 0.1\n[sweep]")
-    physics = Sweep(config.parse(text), folder / "a.nc").run_here().attrs
-    assert np.isnan(physics["friction_decay_per_cycle"])
+    assert np.isnan(physics(config.parse(text))["friction_decay_per_cycle"])
 
 
 def test_a_release_at_rest_on_a_belt_is_measured_by_the_motion_on_the_belt():
@@ -187,6 +187,7 @@ def test_every_figure_draws_and_has_units(folder, kind, name):
     figures.draw(ds.sel(scale=1.0, friction_law="coulomb"), kind).draw_without_rendering()
 
 
+@pytest.mark.usefixtures("empty_pictures")
 def test_figures_of_sines_are_not_offered(folder):
     invoke("run", "swept.toml")
     told = invoke("plot", "all", "swept.nc", "-o", "drawn")

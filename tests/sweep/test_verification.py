@@ -115,7 +115,7 @@ def test_a_judge_that_fails_is_told(here, monkeypatch):
 
 
 def test_very_many_cases_must_be_confirmed(here, monkeypatch):
-    monkeypatch.setattr("wedgesweep.cli.cost.MANY", 7)
+    monkeypatch.setattr("wedgesweep.cli.summary.MANY", 7)
     told = run(SOLVERS["fixed"], code=2)
     for words in ("time: about", "memory: about", "dataset: at most", "8 cases are more than 7: --yes runs"):
         assert words in told
