@@ -6,6 +6,7 @@ import os
 import stat
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+from glob import escape
 from pathlib import Path
 from shutil import rmtree
 from typing import Any
@@ -132,16 +133,11 @@ def naming(path: Path) -> Iterator[None]:
 
 def _sweep(path: Path) -> None:
     """Remove temporary files and directories of ``path`` whose processes have ended."""
-    for orphan in path.parent.glob(f".{_literal(path.name)}.*"):
+    for orphan in path.parent.glob(f".{escape(path.name)}.*"):
         process = orphan.name.rpartition(".")[2]
         if process.isascii() and process.isdigit() and not _runs(int(process)):
             with suppress(OSError):
                 rmtree(orphan) if orphan.is_dir() else orphan.unlink()
-
-
-def _literal(name: str) -> str:
-    """A pattern that matches just this name."""
-    return "".join(f"[{each}]" if each in "*?[" else each for each in name)
 
 
 def _runs(process: int) -> bool:

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from math import inf, isinf, pi
 
+from wedgesweep.formatting import SUPERSCRIPT
 from wedgesweep.natural_units import (
     ACCELERATION,
     BENCH,
@@ -20,41 +21,27 @@ from wedgesweep.rotation import ENDINGS
 # How much wider than the searched range the range is in which a number may be followed: times the width, or
 # as a factor of a logarithm. Ends that a number must not reach are left this share of the way.
 WIDER, SHORT = 10.0, 0.01
-# Longest suffix first, so that "_N_per_mm" is not read as "_mm".
-SI_FACTORS = {
-    **{other: 1.0 for other, _ in ENDINGS.values()},
-    "_N_per_mm3": 1e9,
-    "_N_per_mm": 1e3,
-    "_N_s2_per_m2": 1.0,
-    "_N_s_per_m": 1.0,
-    "_m_per_s2": 1.0,
-    "_rad_per_s": 1.0,
-    "_mm_per_s": 1e-3,
-    "_deg": pi / 180.0,
-    "_kg": 1.0,
-    "_mm": 1e-3,
-    "_hz": 1.0,
-    "_N": 1.0,
-    "_s": 1.0,
-}
-# What the same endings tell of the dimension; without any of them a number is a share or a factor.
-DIMENSIONS = {
-    "_N_per_mm3": Dimension(mass=1, length=-2, time=-2),
-    "_N_per_mm": Dimension(mass=1, time=-2),
-    "_N_s2_per_m2": Dimension(mass=1, length=-1),
-    "_N_s_per_m": Dimension(mass=1, time=-1),
-    "_m_per_s2": ACCELERATION,
-    "_rad_per_s": FREQUENCY,
-    "_mm_per_s": VELOCITY,
-    "_deg": SHARE,
-    "_kg": Dimension(mass=1),
-    "_mm": LENGTH,
-    "_hz": FREQUENCY,
-    "_N": Dimension(mass=1, length=1, time=-2),
-    "_s": TIME,
+# Endings of keys: what turns the unit into SI, and its dimension; without any of them a number is a share or
+# a factor. The longest are first, so that "_N_per_mm" is not read as "_mm".
+UNITS = {
+    "_N_per_mm3": (1e9, Dimension(mass=1, length=-2, time=-2)),
+    "_N_per_mm": (1e3, Dimension(mass=1, time=-2)),
+    "_N_s2_per_m2": (1.0, Dimension(mass=1, length=-1)),
+    "_N_s_per_m": (1.0, Dimension(mass=1, time=-1)),
+    "_m_per_s2": (1.0, ACCELERATION),
+    "_rad_per_s": (1.0, FREQUENCY),
+    "_mm_per_s": (1e-3, VELOCITY),
+    "_deg": (pi / 180.0, SHARE),
+    "_kg": (1.0, Dimension(mass=1)),
+    "_mm": (1e-3, LENGTH),
+    "_hz": (1.0, FREQUENCY),
+    "_N": (1.0, Dimension(mass=1, length=1, time=-2)),
+    "_s": (1.0, TIME),
 }
 # A rotation has an angle in place of a length, and so on; omega_n stays a frequency.
-DIMENSIONS = {other: DIMENSIONS[ending] for ending, (other, _) in ENDINGS.items()} | DIMENSIONS
+UNITS = {other: (1.0, UNITS[ending][1]) for ending, (other, _) in ENDINGS.items()} | UNITS
+# Symbols that are not the letters of a key.
+SYMBOLS = {"_deg": "°", "_hz": "Hz"}
 
 
 @dataclass(frozen=True)
@@ -87,7 +74,7 @@ class Quantity:
 
     @cached_property
     def suffix(self) -> str:
-        return next((suffix for suffix in SI_FACTORS if self.key.endswith(suffix)), "")
+        return next((suffix for suffix in UNITS if self.key.endswith(suffix)), "")
 
     @cached_property
     def name(self) -> str:
@@ -96,7 +83,7 @@ class Quantity:
     @cached_property
     def factor(self) -> float:
         """What turns a number in the key's unit into SI."""
-        return SI_FACTORS.get(self.suffix, 1.0)
+        return UNITS[self.suffix][0] if self.suffix else 1.0
 
     @cached_property
     def unit(self) -> str:
@@ -111,10 +98,16 @@ class Quantity:
         units = {"deg": "degree", "hz": "Hz"}
         return " ".join(units.get(part, part) for part in (*above, *below)) or "1"
 
+    @property
+    def symbol(self) -> str:
+        """Unit of the key, as readers write it: N/mm."""
+        words = self.suffix.removeprefix("_").replace("_per_", "/").replace("_", " ")
+        return SYMBOLS.get(self.suffix, words.translate(SUPERSCRIPT))
+
     @cached_property
     def dimension(self) -> Dimension:
         """Powers of mass, length and time."""
-        return DIMENSIONS.get(self.suffix, SHARE)
+        return UNITS[self.suffix][1] if self.suffix else SHARE
 
     def searched(self, units: NaturalUnits = BENCH) -> tuple[float, float]:
         """Search range in the key's unit for a model with these natural units; no limits if not fitted."""

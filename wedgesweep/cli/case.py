@@ -105,15 +105,15 @@ def _print_remarks(ds: "xr.Dataset") -> None:
     from wedgesweep.friction import LAWS
     from wedgesweep.sweep import outcomes
 
-    result = outcomes.of_dataset(ds)[0]
-    if result.lifted:
-        share = f"{100.0 * result.lift_off_fraction:.2g} % of the slipping time"
+    found, law = outcomes.of_dataset(ds), ds["friction_law"].item()
+    if found.lifted:
+        share = f"{100.0 * ds['lift_off_fraction'].item():.2g} % of the slipping time"
         log.warning(f"outside of the model's validity: a joint pulls in {share}; a real one would lift off")
     creeps = ds["stick_fraction"].item() == 1.0 and ds["peak_to_peak"].item() > 0.0
-    if creeps and not LAWS[result.case.law].SET_VALUED:
+    if creeps and not LAWS[law].SET_VALUED:
         travel = f"{ds['peak_to_peak'].item() * 1e3:.3g} mm"
-        log.warning(f"a stick fraction of 1 is no rest: {result.case.law} creeps all the time, by {travel}")
-    if not result.settled:
+        log.warning(f"a stick fraction of 1 is no rest: {law} creeps all the time, by {travel}")
+    if found.unsettled:
         log.warning("not settled: the response still changes from period to period")
 
 

@@ -8,11 +8,11 @@ import click
 
 from wedgesweep import formatting
 from wedgesweep.cli.compiling import announce_compiling
-from wedgesweep.cli.cost import print_cost
 from wedgesweep.cli.failure import Failure
 from wedgesweep.cli.measurement import print_measurement
 from wedgesweep.cli.options import CONFIG, PLUGIN, STANDARD_OUTPUT, GivenPath, OutputPath, require_kind
 from wedgesweep.cli.run import print_remark
+from wedgesweep.cli.summary import print_cost
 from wedgesweep.files import ENDINGS, JSON, TOML, write_text
 from wedgesweep.kinds import CONFIG_OR_MEASURED, DIAGNOSIS, SWEEP, is_measured, kind_of
 

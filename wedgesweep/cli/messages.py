@@ -34,14 +34,9 @@ def begin() -> None:
     log.setLevel(logging.INFO)
 
 
-def is_quiet() -> bool:
-    """Whether progress and notes are not to be shown."""
-    return not log.isEnabledFor(logging.INFO)
-
-
 def shows_status() -> bool:
     """Whether there is a terminal with a line for progress."""
-    return sys.stderr.isatty() and not is_quiet()
+    return sys.stderr.isatty() and log.isEnabledFor(logging.INFO)
 
 
 def show_status(text: str) -> None:

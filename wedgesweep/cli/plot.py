@@ -111,7 +111,6 @@ def plot(
         directory.mkdir(parents=True, exist_ok=True)
         _draw_all(found, directory, suffix, _options(found, picks))
         return
-    _require_kind(kind, path)
     asked = ctx.get_parameter_source("suffix") is not ParameterSource.DEFAULT
     if output and asked and output.suffix.lower() != f".{suffix}":
         message = f"--format {suffix} and -o {output} contradict each other; leave one out"
@@ -219,17 +218,6 @@ def _listed(values: "np.ndarray") -> str:
     return f"{len(values)} from {values[0]:.4g} to {values[-1]:.4g}"
 
 
-def _require_kind(kind: str, path: Path) -> None:
-    """Refuse a figure of a diagnosis for a dataset, and the reverse."""
-    if path.is_dir() and kind in OF_DATASETS:
-        valid = ", ".join(diagnosis.DESCRIPTIONS)
-        message = f"{path}: a directory; {kind} draws the dataset of a run, a diagnosis has {valid}"
-        raise Failure(message)
-    if path.is_file() and kind in diagnosis.DESCRIPTIONS:
-        message = f"{path}: not a directory; {kind} draws what 'wedgesweep diagnose -o DIR' left in DIR"
-        raise Failure(message)
-
-
 def _require_place(file: Path) -> None:
     """Check before the drawing that the file can be written."""
     if file.suffix.lower() not in FORMATS:
@@ -261,11 +249,7 @@ def _draw(
     import numpy as np
     import xarray as xr
 
-    kinds = figures.of(found)
-    if kind not in kinds:
-        message = f"no figure '{kind}' of these data; there are {', '.join(kinds)}"
-        raise ValueError(message)
-    picks = _accepted(kind, figures.options(kinds[kind]), options, strict)
+    picks = _accepted(kind, figures.options(figures.kind_of(found, kind)), options, strict)
     # Numbers that no diagnosis writes end in an error below.
     handled = nullcontext() if isinstance(found, xr.Dataset) else np.errstate(all="ignore")
     try:

@@ -8,13 +8,11 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from wedgesweep.cli.compiling import announce_compiling
-from wedgesweep.cli.cost import MANY, require_confirmed
 from wedgesweep.cli.failure import SOME_FAILED, Failure, exit_code
 from wedgesweep.cli.messages import log
 from wedgesweep.cli.options import CONFIG, N_JOBS, PLUGIN, FiniteRange, OutputPath, WholeRange, command_line
 from wedgesweep.cli.progress import ProgressReport
-from wedgesweep.cli.summary import print_summary
-from wedgesweep.cli.verify import print_verification
+from wedgesweep.cli.summary import MANY, print_summary, print_verification, require_confirmed
 from wedgesweep.files import NETCDF
 from wedgesweep.formatting import counted, duration
 from wedgesweep.solvers.names import SOLVERS

@@ -1,18 +1,48 @@
-"""Summary of how the cases ended, for run and status."""
+"""What run, check and status print of a sweep: cost, how cases ended, how far off Radau finds them."""
 
 from typing import TYPE_CHECKING
 
 import click
 
-from wedgesweep import formatting
-from wedgesweep.cli.failure import SOME_FAILED
+from wedgesweep.cli.failure import SOME_FAILED, Failure
+from wedgesweep.cli.messages import log
+from wedgesweep.formatting import counted, duration, size
 
 if TYPE_CHECKING:
     import xarray as xr
 
     from wedgesweep.sweep.outcomes import Outcomes
+    from wedgesweep.sweep.run import Sweep
+    from wedgesweep.sweep.verification import VerifiedCase
 
+# More cases than this run only if that was confirmed.
+MANY = 10_000_000
 LISTED = 5
+
+
+def print_cost(sweep: "Sweep", n_jobs: int) -> None:
+    """Time some cases of a sweep; print what all cases need, and how many of those run here failed."""
+    from wedgesweep.sweep.estimate import estimate
+
+    cost, jobs = estimate(sweep, n_jobs), counted(n_jobs, "job")
+    cases = counted(cost.sampled.size, "case")
+    click.echo(
+        f"time: about {duration(cost.seconds)} on {jobs} (from {cases} run now)\n"
+        f"memory: about {size(cost.memory)} on {jobs}, {size(cost.bytes_per_case)} of it for each case\n"
+        f"dataset: at most {size(cost.dataset_bytes)}, less after compression"
+    )
+    failed = cost.sampled[cost.sampled["status"] != 0]
+    if failed.size:
+        reason = failed[0]["message"].decode()
+        click.echo(f"of those, {counted(failed.size, 'case')} failed, the first by: {reason}")
+
+
+def require_confirmed(sweep: "Sweep", n_jobs: int, confirmed: bool) -> None:
+    """Refuse a sweep of very many cases, with what it would cost, unless that was confirmed."""
+    if sweep.count > MANY and not confirmed:
+        print_cost(sweep, n_jobs)
+        message = f"{sweep.count} cases are more than {MANY}: --yes runs them all the same"
+        raise Failure(message)
 
 
 def print_summary(ds: "xr.Dataset") -> int:
@@ -26,7 +56,7 @@ def print_outcomes(found: "Outcomes", total: int | None = None) -> int:
     """Print the summary of the finished cases out of ``total``; return the exit code."""
     counts = ", ".join(f"{count} {status}" for status, count in found.counts.items())
     remaining = "" if total is None else f", {total - len(found)} remaining"
-    click.echo(f"{formatting.counted(total or len(found), 'case')}: {counts or 'none finished'}{remaining}")
+    click.echo(f"{counted(total or len(found), 'case')}: {counts or 'none finished'}{remaining}")
     _print_share(found.unsettled, len(found), "did not reach steady state (variables period, periodicity)")
     _print_share(
         found.lifted,
@@ -36,7 +66,7 @@ def print_outcomes(found: "Outcomes", total: int | None = None) -> int:
     )
     failed = found.failures
     for place in failed[:LISTED].tolist():
-        click.echo(f"  {found[place]}")
+        click.echo(f"  {found.described(place)}")
     if len(failed) > LISTED:
         click.echo(f"  and {len(failed) - LISTED} more")
     return SOME_FAILED if len(failed) else 0
@@ -44,5 +74,44 @@ def print_outcomes(found: "Outcomes", total: int | None = None) -> int:
 
 def _print_share(count: int, total: int, what: str) -> None:
     if count:
-        share = f"{count} of {formatting.counted(total, 'case')} ({100.0 * count / total:.3g} %)"
+        share = f"{count} of {counted(total, 'case')} ({100.0 * count / total:.3g} %)"
         click.echo(f"  {share} {what}")
+
+
+def print_verification(sweep: "Sweep", ds: "xr.Dataset", count: int, seed: int, n_jobs: int) -> int:
+    """Solve random cases again and print the largest differences; return the exit code."""
+    from wedgesweep.sweep import verification
+
+    log.info(f"verifying at most {counted(count, 'random case')} by Radau")
+    found = verification.verify(sweep, ds, count, seed, n_jobs)
+    verifiable = found.verifiable
+    cases = counted(len(verifiable), "case")
+    click.echo(
+        f"verified by Radau at rtol {verification.RTOL:g}: {cases} out of {found.candidates} "
+        f"that were solved (random, seed {found.seed})"
+    )
+    for name, words in (("ratio", "amplitude ratio"), ("stick", "stick fraction")):
+        if verifiable:
+            worst = verification.largest(verifiable, name)
+            apart = getattr(worst.apart, name)
+            click.echo(f"  largest difference of the {words}: {apart:.2g}, at {_numbers_of(worst, name)}")
+    for case in [case for case in found.cases if case.message][:LISTED]:
+        click.echo(f"  not verified: {case.case}: {case.message}")
+    wrong = [case for case in verifiable if case.is_wrong]
+    if wrong:
+        ratio, small, stick = verification.RATIO_BOUND, verification.SMALL_RATIO, verification.STICK_BOUND
+        click.echo(
+            f"  {len(wrong)} of {len(verifiable)} cases differ by more than {ratio:g} of the amplitude ratio "
+            f"(of {small:g} where it is smaller) or a stick fraction of {stick:g}:"
+        )
+    for case in wrong[:LISTED]:
+        click.echo(f"    {_numbers_of(case, 'ratio')}; stick fraction {_pair(case, 'stick')}")
+    return SOME_FAILED if wrong or not verifiable else 0
+
+
+def _numbers_of(case: "VerifiedCase", name: str) -> str:
+    return f"{case.case}: {_pair(case, name)}"
+
+
+def _pair(case: "VerifiedCase", name: str) -> str:
+    return f"{getattr(case.stored, name):.6g}, by Radau {getattr(case.reference, name):.6g}"

@@ -34,7 +34,7 @@ def of(module: ModuleType, quantities: Sequence[Quantity] = (), system: str = "s
     remark = symbols.as_named(getattr(module, "REMARK", ""), system)
     known = {
         **symbols.SYSTEMS[system],
-        **{each.name: Meaning(each.meaning, symbols.unit_of(each)) for each in quantities},
+        **{each.name: Meaning(each.meaning, each.symbol) for each in quantities},
         **getattr(module, "SYMBOLS", {}),
     }
     written = [*lines, *remark.split("$")[1::2]]

@@ -3,8 +3,6 @@
 import re
 from typing import NamedTuple
 
-from wedgesweep.quantity import Quantity
-
 # Numbers that need no explanation.
 CONSTANTS = ("pi",)
 
@@ -88,27 +86,3 @@ def as_named(text: str, system: str) -> str:
     for name, own in NAMED[system].items():
         text = re.sub(rf"\b{name}\b", own, text)
     return text
-
-
-UNITS = {
-    **{"_N_m_s2_per_rad2": "N m s²/rad²", "_N_m_s_per_rad": "N m s/rad", "_N_m_per_rad3": "N m/rad³"},
-    **{"_N_m_per_rad": "N m/rad", "_rad_per_s2": "rad/s²", "_kg_m2": "kg m²", "_N_m": "N m", "_rad": "rad"},
-    "_N_per_mm3": "N/mm³",
-    "_N_per_mm": "N/mm",
-    "_N_s2_per_m2": "N s²/m²",
-    "_N_s_per_m": "N s/m",
-    "_m_per_s2": "m/s²",
-    "_rad_per_s": "rad/s",
-    "_mm_per_s": "mm/s",
-    "_deg": "°",
-    "_kg": "kg",
-    "_mm": "mm",
-    "_hz": "Hz",
-    "_N": "N",
-    "_s": "s",
-}
-
-
-def unit_of(quantity: Quantity) -> str:
-    """Unit in which a config gives a number."""
-    return UNITS.get(quantity.suffix, "")

@@ -27,7 +27,7 @@ DOTS_PER_INCH = 200
 # The picks that figures of all datasets share: a law, and values of axes by name.
 LAW, AT = "law", "at"
 
-FIGURES = catalogue.declared(Path(__file__).parent, __name__)
+FIGURES = catalogue.declared(__path__[0], __name__)
 DESCRIPTIONS = {name: kind.description for name, kind in FIGURES.items()}
 
 
@@ -74,11 +74,7 @@ def draw(
 
     from wedgesweep.figures import cases, models
 
-    kinds = of(data)
-    if name not in kinds:
-        message = f"no figure '{name}' of these data; there are {', '.join(kinds)}"
-        raise ValueError(message)
-    kind = kinds[name]
+    kind = kind_of(data, name)
     try:
         _require_known(picks, options(kind))
         checked = data
@@ -143,6 +139,15 @@ def of(data: "xr.Dataset | DiagnosisResult") -> dict[str, catalogue.FigureKind]:
     if "sample" in data.dims:
         return samples.FIGURES
     return transient.FIGURES if "scale" in data.coords else FIGURES
+
+
+def kind_of(data: "xr.Dataset | DiagnosisResult", name: str) -> catalogue.FigureKind:
+    """Return the figure of a name; raises ValueError if it does not draw such data."""
+    kinds = of(data)
+    if name not in kinds:
+        message = f"no figure '{name}' of these data; there are {', '.join(kinds)}"
+        raise ValueError(message)
+    return kinds[name]
 
 
 def save(figure: "Figure", path: str | Path) -> None:

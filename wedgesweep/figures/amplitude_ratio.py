@@ -7,9 +7,9 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.collections import QuadMesh
 from matplotlib.colors import LogNorm
 
-from wedgesweep.figures import cases, labels, style, validity
+from wedgesweep.figures import labels, style, validity
 from wedgesweep.figures.maps import cell_edges
-from wedgesweep.figures.panels import Panels, Target, panels
+from wedgesweep.figures.panels import Panels, Target, per_law
 
 NAME = "amplitude-ratio"
 DESCRIPTION = "amplitude ratio over frequency, all laws and amplitudes (Fig. 4)"
@@ -106,41 +106,39 @@ def _explain(made: Panels, ds: xr.Dataset, norm: LogNorm, missing: bool) -> None
         style.decimal_ticks(bar.ax.yaxis)
     else:
         alone = f", {words.size(ds['amplitude'].item(), 4)}"
-    marks = validity.handles(ds)
-    made.legend(marks, [str(mark.get_label()) for mark in marks])
+    made.legend(validity.handles(ds))
     _title(made, ds, alone, "$\\times$ no result (failed or not run)" if missing else "")
 
 
 def _title(made: Panels, ds: xr.Dataset, alone: str, note: str) -> None:
     words = labels.of(ds)
-    notes = (f"ratios below {LOWEST} are not shown", note, validity.shares(ds))
     made.title(
         f"Half peak-to-peak of ${words.motion}$ ({words.whose}) over {words.reference}{alone}",
-        "; ".join(filter(None, notes)),
+        f"ratios below {LOWEST} are not shown",
+        note,
+        validity.shares(ds),
     )
 
 
 def draw(target: Target, ds: xr.Dataset) -> Panels:
     """Draw a panel per law, the input amplitude as colour, the frictionless response dashed."""
-    names = cases.laws(ds)
     words = labels.of(ds)
     if not ds["amplitude"].all():
         message = "needs an input amplitude that the response can be compared with; there is one of 0"
         raise ValueError(message)
     norm = _amplitude_norm(ds["amplitude"].values * words.factor)
     top = 1.5 * float(np.fmax(ds["amplitude_ratio"].max(), 1.5))
-    made = panels(target, len(names), size=(3.3, 3.8))
+    made, parts = per_law(target, ds, size=(3.3, 3.8))
     axes = made.axes
     axes[0].set_yscale("log")
     missing, density = False, None
-    for ax, law in zip(axes, names, strict=True):
+    for ax, _, law in parts:
         if ds["beta"].size * ds["amplitude"].size > MOST_CASES:
-            density = _draw_density(ax, ds.sel(friction_law=law), top)
+            density = _draw_density(ax, law, top)
         else:
-            missing |= _draw_law(ax, ds.sel(friction_law=law), norm, words.factor)
+            missing |= _draw_law(ax, law, norm, words.factor)
         _draw_reference(ax, ds)
         style.add_hertz_axis(ax, ds)
-        ax.set_title(law, fontsize=10)
     style.decimal_ticks(axes[0].yaxis)
     axes[0].set(xlim=_limits(ds["beta"].values), ylim=(LOWEST, top))
     if axes[0].get_legend_handles_labels()[0]:

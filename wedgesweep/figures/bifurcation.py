@@ -5,7 +5,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 
 from wedgesweep.figures import cases, labels, style, validity
-from wedgesweep.figures.panels import Panels, Target, panels
+from wedgesweep.figures.panels import Panels, Target, per_law
 
 NAME = "bifurcation"
 DESCRIPTION = "Poincare samples over frequency at one amplitude, of 20 frequencies or more"
@@ -69,28 +69,22 @@ def draw(target: Target, ds: xr.Dataset, amplitude: float | None = None) -> Pane
         raise ValueError(message)
     place = ds.sizes["amplitude"] // 2 if amplitude is None else cases.nearest(ds["amplitude"], amplitude)[0]
     ds = ds.isel(amplitude=place)
-    names, words = cases.laws(ds), labels.of(ds)
-    scale = _half_swing(ds)
-    made = panels(target, len(names), size=(3.3, 3.5))
-    axes = made.axes
+    words, scale = labels.of(ds), _half_swing(ds)
+    made, parts = per_law(target, ds, size=(3.3, 3.5))
     missing = False
-    for ax, law in zip(axes, names, strict=True):
-        missing |= _draw_law(ax, ds.sel(friction_law=law), scale)
+    for ax, _, law in parts:
+        missing |= _draw_law(ax, law, scale)
         style.add_hertz_axis(ax, ds)
-        ax.set_title(law, fontsize=10)
-    axes[0].set_ylim(-1.1, 1.1)
-    style.label(axes, style.BETA, f"${words.motion}$ from its middle, over the largest half swing [1]")
-    made.legend(*axes[0].get_legend_handles_labels(), columns=6)
+    made.axes[0].set_ylim(-1.1, 1.1)
+    style.label(made.axes, style.BETA, f"${words.motion}$ from its middle, over the largest half swing [1]")
+    made.legend(columns=6)
     grey, lifted = (int(marked.sum()) for marked in (validity.unsettled(ds), validity.lifted(ds)))
-    notes = (
+    made.title(
+        f"Displacement at forcing phase 0 (${words.input}$ = 0, rising) of each kept period, "
+        f"{words.size(ds['amplitude'].item(), 4)}; the scale is that of each frequency",
         words.sign,
         "$\\times$ no result or no motion" if missing else "",
         f"grey: {grey} of {ds['status'].size} cases that did not settle" if grey else "",
         f"hatched: lift-off, outside of validity ({lifted} cases)" if lifted else "",
-    )
-    made.title(
-        f"Displacement at forcing phase 0 (${words.input}$ = 0, rising) of each kept period, "
-        f"{words.size(ds['amplitude'].item(), 4)}; the scale is that of each frequency",
-        "; ".join(filter(None, notes)),
     )
     return made

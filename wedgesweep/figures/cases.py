@@ -1,4 +1,4 @@
-"""Which cases of a dataset a figure draws, and the errors if they are not there."""
+"""Which cases of a dataset a figure draws, and the errors if they are not there; samples of a motion."""
 
 from collections.abc import Sequence
 
@@ -94,3 +94,22 @@ def samples_per_period(ds: xr.Dataset) -> int:
     """Count the waveform samples in one forcing period."""
     phase = ds["phase"].values
     return round(2.0 * np.pi / (phase[1] - phase[0]))
+
+
+def one_scale(ds: xr.Dataset, scale: float | None) -> xr.Dataset:
+    """Select the scale nearest to one, by default the largest."""
+    place = ds.sizes["scale"] - 1 if scale is None else nearest(ds["scale"], scale)[0]
+    return ds.isel(scale=place)
+
+
+def rising(displacement: np.ndarray) -> np.ndarray:
+    """Indices before the upward zero crossings of a motion about its mean in their midst."""
+    centred = displacement - 0.5 * (np.nanmax(displacement) + np.nanmin(displacement))
+    return np.flatnonzero((centred[:-1] < 0.0) & (centred[1:] >= 0.0))
+
+
+def extremes(displacement: np.ndarray) -> np.ndarray:
+    """Indices of the samples at which a motion turns round, shape (k,)."""
+    slope = np.sign(np.diff(displacement))
+    moving = np.flatnonzero(slope != 0.0)
+    return moving[1:][slope[moving[1:]] != slope[moving[:-1]]]

@@ -3,7 +3,7 @@
 import ast
 from dataclasses import dataclass
 from importlib import import_module
-from inspect import signature
+from inspect import getdoc, signature
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -32,14 +32,20 @@ class FigureKind:
         """Options of the figure, all of which have a default."""
         return tuple(signature(self.load().draw).parameters)[2:]
 
+    @property
+    def reading(self) -> str:
+        """What to see in the figure, as the docstring of its ``draw`` says it."""
+        words = " ".join(str(getdoc(self.load().draw)).partition("To see: ")[2].split())
+        return words[:1].upper() + words[1:]
+
     def load(self) -> ModuleType:
         """Import the file of the figure, and with it matplotlib."""
         return import_module(self.module)
 
 
-def declared(folder: Path, package: str) -> dict[str, FigureKind]:
+def declared(folder: str | Path, package: str) -> dict[str, FigureKind]:
     """Figures of a folder, which is a package of that name, by the name of the figure."""
-    found = [(path.stem, _constants(path)) for path in sorted(folder.glob("*.py"))]
+    found = [(path.stem, _constants(path)) for path in sorted(Path(folder).glob("*.py"))]
     kinds = [
         FigureKind(module=f"{package}.{stem}", **{key.lower(): value for key, value in constants.items()})
         for stem, constants in found

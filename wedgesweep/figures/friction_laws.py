@@ -57,15 +57,14 @@ def draw(target: Target, ds: xr.Dataset) -> Panels:
     reach = REACH * settings.friction["threshold_velocity"]
     curves = {law: curve(law, parameters[law], reach) for law in names}
     made = panels(target, len(names), size=(3.2, 3.0))
-    axes = made.axes
-    for ax, law in zip(axes, names, strict=True):
+    for ax, law in zip(made.axes, names, strict=True):
         for velocity, coefficient in curves.values():
             ax.plot(velocity * style.MM, coefficient, color="0.8", linewidth=1)
         velocity, coefficient = curves[law]
         ax.plot(velocity * style.MM, coefficient, color=style.law_style(law)["color"], linewidth=1.7)
         ax.set_title(law, fontsize=10)
         _annotate(ax, law, parameters[law])
-    style.label(axes, "slip velocity [mm/s]", "friction coefficient $μ$, signed [1]")
+    style.label(made.axes, "slip velocity [mm/s]", "friction coefficient $μ$, signed [1]")
     grey = "; grey: the other laws" if len(names) > 1 else ""
     made.title("Friction laws", "a positive coefficient opposes a positive slip velocity" + grey)
     return made

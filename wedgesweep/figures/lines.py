@@ -1,7 +1,6 @@
 """Any number of the cases over one axis of the sweep, another axis as colour."""
 
 from collections.abc import Mapping
-from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -46,7 +45,7 @@ def draw(
     color: str | None = None,
     facet: str | None = None,
     variable: str = "amplitude_ratio",
-    at: Mapping[str, Any] = MappingProxyType({}),
+    at: Mapping[str, Any] | None = None,
 ) -> Panels:
     """Draw a variable over the axis ``x``; by default the longest."""
     ds, layout = over_axes.laid_out(ds, x, color, facet, at)
@@ -61,10 +60,8 @@ def draw(
     if bar is not None and layout.other:
         made.colorbar(bar, over_axes.label(ds, layout.other))
     handles = [] if bar is not None else made.axes[0].get_legend_handles_labels()[0]
-    handles = [*(handles if layout.other else []), *validity.handles(ds)]
-    made.legend(handles, [str(each.get_label()) for each in handles])
-    notes = (over_axes.picked(ds, layout), validity.shares(ds))
-    made.title(over_axes.meaning(ds, variable), "; ".join(filter(None, notes)))
+    made.legend([*(handles if layout.other else []), *validity.handles(ds)])
+    made.title(over_axes.meaning(ds, variable), over_axes.picked(ds, layout), validity.shares(ds))
     return made
 
 

@@ -1,7 +1,6 @@
 """Any number of the cases as a colour over two axes of the sweep."""
 
 from collections.abc import Mapping
-from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -34,7 +33,7 @@ def draw(
     y: str | None = None,
     facet: str | None = None,
     variable: str = "stick_fraction",
-    at: Mapping[str, Any] = MappingProxyType({}),
+    at: Mapping[str, Any] | None = None,
 ) -> Panels:
     """Draw a variable over the axes ``x`` and ``y``; by default the two longest."""
     ds, layout = over_axes.laid_out(ds, x, y, facet, at, numbers=True)
@@ -60,6 +59,6 @@ def draw(
         ax.set_title(title, fontsize=10)
     style.label(made.axes, over_axes.label(ds, layout.x), over_axes.label(ds, layout.other))
     made.colorbar(mesh, over_axes.short(ds, variable))
-    missing = "; purple: no result (failed, or not run)" if bool(shown.isnull().any()) else ""
-    made.title(over_axes.meaning(ds, variable), over_axes.picked(ds, layout) + missing)
+    missing = "purple: no result (failed, or not run)" * bool(shown.isnull().any())
+    made.title(over_axes.meaning(ds, variable), over_axes.picked(ds, layout), missing)
     return made

@@ -8,8 +8,8 @@ from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.collections import QuadMesh
 
-from wedgesweep.figures import cases, labels, style
-from wedgesweep.figures.panels import Panels, Target, panels
+from wedgesweep.figures import labels, style
+from wedgesweep.figures.panels import Panels, Target, per_law
 
 COLOURS = colormaps["cividis"].with_extremes(bad=style.PURPLE)
 # Edges of the cells along frequency and amplitude.
@@ -20,16 +20,15 @@ def panel_per_law(
     target: Target, ds: xr.Dataset, draw_law: Callable[[Axes, xr.Dataset, Edges], QuadMesh]
 ) -> tuple[Panels, QuadMesh]:
     """Draw each law by ``draw_law`` in a panel of its own; the panels, and what the colour bar is for."""
-    words, names = labels.of(ds), cases.laws(ds)
+    words = labels.of(ds)
     amplitudes = ds["amplitude"].values * words.factor
     logarithmic = bool(amplitudes[0] > 0.0)
     edges = cell_edges(ds["beta"].values, False), cell_edges(amplitudes, logarithmic)
-    made = panels(target, len(names), size=(3.3, 3.6))
-    for ax, law in zip(made.axes, names, strict=True):
+    made, parts = per_law(target, ds, size=(3.3, 3.6))
+    for ax, _, law in parts:
         ax.grid(visible=False)
-        mesh = draw_law(ax, ds.sel(friction_law=law), edges)
+        mesh = draw_law(ax, law, edges)
         ax.set(xlim=edges[0][[0, -1]], ylim=edges[1][[0, -1]])
-        ax.set_title(law, fontsize=10)
         style.add_hertz_axis(ax, ds)
     if logarithmic:
         made.axes[0].set_yscale("log")

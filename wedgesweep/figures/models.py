@@ -1,7 +1,6 @@
 """One model of a dataset whose sweep varies it, for figures of frequency and amplitude."""
 
 from collections.abc import Mapping
-from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -18,7 +17,7 @@ def varied(ds: xr.Dataset) -> list[str]:
     return [str(name) for name in ds.coords if "key" in ds[name].attrs]
 
 
-def of_one(ds: xr.Dataset, at: Mapping[str, float] = MappingProxyType({})) -> xr.Dataset:
+def of_one(ds: xr.Dataset, at: Mapping[str, Any] | None = None) -> xr.Dataset:
     """The dataset of one model, as if its sweep varied nothing else.
 
     ``at`` picks numbers by coordinate or key.
@@ -35,9 +34,9 @@ def of_one(ds: xr.Dataset, at: Mapping[str, float] = MappingProxyType({})) -> xr
     return _alone(found)
 
 
-def at_values(ds: xr.Dataset, at: Mapping[str, Any]) -> xr.Dataset:
+def at_values(ds: xr.Dataset, at: Mapping[str, Any] | None) -> xr.Dataset:
     """Select the values nearest to some, by coordinate or dotted key; raises ValueError."""
-    for name, value in at.items():
+    for name, value in (at or {}).items():
         place = coordinate(ds, name)
         if ds[place].ndim == 0:
             continue

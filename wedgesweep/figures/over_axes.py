@@ -25,7 +25,7 @@ def laid_out(
     x: str | None,
     other: str | None,
     facet: str | None,
-    at: Mapping[str, Any],
+    at: Mapping[str, Any] | None,
     numbers: bool = False,
 ) -> tuple[xr.Dataset, Layout]:
     """Choose axes, the longest first where none is asked for, and pick one value of all that are left.
@@ -149,7 +149,7 @@ def meaning(ds: xr.Dataset, name: str) -> str:
 
 
 def samples(
-    ds: xr.Dataset, facet: str | None, at: Mapping[str, Any], along: str | None = None
+    ds: xr.Dataset, facet: str | None, at: Mapping[str, Any] | None, along: str | None = None
 ) -> tuple[list[tuple[str, xr.Dataset]], str]:
     """Title and dataset of each panel of a figure of samples, and what was picked of the other axes.
 

@@ -5,12 +5,14 @@ from dataclasses import dataclass
 from textwrap import wrap
 from typing import Any
 
+import xarray as xr
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colorbar import Colorbar
 from matplotlib.figure import Figure, SubFigure
 
-from wedgesweep.figures import style
+from wedgesweep.figures import cases, style
 
 CHARACTERS_PER_INCH = 13  # of a title or legend
 HANDLE = 8  # characters that the mark of a label in a legend takes
@@ -29,8 +31,8 @@ class Panels:
     axes: list[Axes]
     embedded: bool = False
 
-    def title(self, what: str, note: str = "") -> None:
-        """Write what the figure shows, and below it the sign convention or how to read it.
+    def title(self, what: str, *notes: str) -> None:
+        """Write what the figure shows, and below it how to read it; empty notes are left out.
 
         Given axes keep the title of their panel; if they have none, it is what the figure shows.
         """
@@ -38,6 +40,7 @@ class Panels:
             ax = self.axes[0]
             ax.set_title(ax.get_title() or self._wrapped(what, ax.bbox.width), fontsize=10)
             return
+        note = "; ".join(filter(None, notes))
         lines = [self._wrapped(text, self.figure.bbox.width) for text in (what, note) if text]
         self._write(lines)
 
@@ -57,8 +60,15 @@ class Panels:
     def _wrapped(self, text: str, pixels: float) -> str:
         return "\n".join(wrap(text, max(20, int(CHARACTERS_PER_INCH * pixels / self.figure.dpi))))
 
-    def legend(self, handles: Sequence[Any], labels: Sequence[str], columns: int = 3) -> None:
-        """Write a legend below the panels, or into given axes."""
+    def legend(
+        self, handles: Sequence[Artist] | None = None, labels: Sequence[str] = (), columns: int = 3
+    ) -> None:
+        """Write a legend below the panels, or into given axes; by default of the first panel.
+
+        Handles without ``labels`` have their own.
+        """
+        handles = self.axes[0].get_legend_handles_labels()[0] if handles is None else handles
+        labels = labels or [str(handle.get_label()) for handle in handles]
         if not handles:
             return
         if self.embedded:
@@ -105,6 +115,17 @@ def panels(
     for ax in grid[:count]:
         style.dress(ax)
     return Panels(target, list(grid[:count]))
+
+
+def per_law(
+    target: Target, ds: xr.Dataset, **options: Any
+) -> tuple[Panels, list[tuple[Axes, str, xr.Dataset]]]:
+    """Make a panel for each law, with its name as title (see ``panels``); axes, law and cases of each."""
+    names = cases.laws(ds)
+    made = panels(target, len(names), **options)
+    for ax, law in zip(made.axes, names, strict=True):
+        ax.set_title(law, fontsize=10)
+    return made, [(ax, law, ds.sel(friction_law=law)) for ax, law in zip(made.axes, names, strict=True)]
 
 
 def _fitting(labels: Sequence[str], most: int, room: float) -> int:

@@ -42,11 +42,10 @@ def draw(target: Target, ds: xr.Dataset, amplitudes: ArrayLike | None = None) ->
     style.label(axes, "frequency [Hz]", f"peak-to-peak of ${words.motion}$ [mm]")
     shown = ds.isel(amplitude=places)
     handles = [*axes[0].get_legend_handles_labels()[0], *validity.handles(shown)]
-    made.legend(handles, [str(each.get_label()) for each in handles], columns=4)
+    made.legend(handles, columns=4)
     made.title(
         f"Peak-to-peak of ${words.motion}$ ({words.whose}) at fixed input amplitude",
-        "; ".join(
-            filter(None, (any(missing) * "$\\times$ no result (failed or not run)", validity.shares(shown)))
-        ),
+        "$\\times$ no result (failed or not run)" * any(missing),
+        validity.shares(shown),
     )
     return made

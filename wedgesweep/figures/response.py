@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
 from wedgesweep.figures import cases, labels, style, validity
-from wedgesweep.figures.panels import Panels, Target, panels
+from wedgesweep.figures.panels import Panels, Target, per_law
 
 NAME = "response"
 DESCRIPTION = "relative displacement over time and input amplitude at one beta (Figs. 5-7)"
@@ -102,12 +102,11 @@ def draw(
     largest = float(np.nan_to_num(np.abs(waves).max()))
     per_ratio = HEIGHT / largest if largest > 0.0 else 1.0
     time = _time(ds)
-    names, words = cases.laws(ds), labels.of(ds)
-    made = panels(target, len(names), size=(3.2, max(2.4, 1.2 + 0.36 * len(rows))))
+    words = labels.of(ds)
+    made, parts = per_law(target, ds, size=(3.2, max(2.4, 1.2 + 0.36 * len(rows))))
     axes = made.axes
-    for ax, law in zip(axes, names, strict=True):
-        _draw_law(ax, ds.sel(friction_law=law), waves.sel(friction_law=law) * per_ratio)
-        ax.set_title(law, fontsize=10)
+    for ax, name, law in parts:
+        _draw_law(ax, law, waves.sel(friction_law=name) * per_ratio)
     axes[0].set_yticks(range(len(rows)), [f"{a * words.factor:.3g}" for a in ds["amplitude"].values])
     axes[0].set(ylim=(-0.9, len(rows) - 0.1), xlim=(0.0, time[-1]))
     style.label(axes, "time [s]", words.amplitude)
@@ -117,6 +116,6 @@ def draw(
     made.title(
         f"{words.name} ${words.motion}$ ({words.whose}) at {frequency}",
         f"a row for each amplitude, divided by {words.own_reference} and centred; "
-        f"yellow: {labels.sticking(names)}{validity.note_of_open(ds)}",
+        f"yellow: {labels.sticking(cases.laws(ds))}{validity.note_of_open(ds)}",
     )
     return made

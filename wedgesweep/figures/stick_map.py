@@ -90,8 +90,7 @@ def _legend(made: Panels, ds: xr.Dataset) -> None:
             handles.append(Patch(label=text + share, hatch=pattern, **hatched))
     if ds["stick_fraction"].isnull().any():
         handles.append(Patch(facecolor=style.PURPLE, label="no result (failed or not run)"))
-    labels = [str(handle.get_label()) for handle in handles]
-    made.legend(handles, labels, columns=1 if len(made.axes) == 1 else 3)
+    made.legend(handles, columns=1 if len(made.axes) == 1 else 3)
 
 
 def draw(target: Target, ds: xr.Dataset) -> Panels:

@@ -13,24 +13,20 @@ HEAD = ("parameter", "value", "95 % interval")
 
 def section(result: DiagnosisResult) -> Markup:
     """Section with the equations, the parameters and a link to the config."""
-    model = result.document["model"]
+    law, system = result.document["model"]["law"], phrases.system(result.document)
     return html.section(
         "model",
         "The extended model",
         *_introduction(result),
         *(_effect(result, effect) for effect in result.added),
         _uncertain(result),
-        html.details("Equations of the base model", *_base(model["law"], phrases.system(result.document))),
+        html.details(
+            "Equations of the base model",
+            mathematics.of_system(system),
+            html.paragraph(f"Friction law: {law}."),
+            mathematics.of_law(law, system),
+        ),
     )
-
-
-def _base(law: str, system: str) -> list[Markup]:
-    """Equations of motion of the base model, and its friction law."""
-    return [
-        mathematics.of_system(system),
-        html.paragraph(f"Friction law: {law}."),
-        mathematics.of_law(law, system),
-    ]
 
 
 def _introduction(result: DiagnosisResult) -> list[Markup]:

@@ -42,9 +42,9 @@ class InlineFigures:
         found.kind, found.wanted = kind, self.wanted
         return found
 
-    def __call__(self, name: str, caption: str, tests: Sequence[int] | None = None) -> Markup:
-        """Keep the place of a figure."""
-        self.wanted.append(Wanted(name, caption, tests, self.kind))
+    def __call__(self, name: str, caption: str = "", tests: Sequence[int] | None = None) -> Markup:
+        """Keep the place of a figure; by default its caption is what there is to see in it."""
+        self.wanted.append(Wanted(name, caption or diagnosis.FIGURES[name].reading, tests, self.kind))
         return Markup(f"<!-- figure {len(self.wanted) - 1} -->")
 
     def fill(self, page: Markup, n_jobs: int) -> Markup:

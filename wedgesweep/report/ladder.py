@@ -20,12 +20,6 @@ READING = (
 )
 
 
-CAPTION = (
-    "Filled marks are the best explanations with no effect, one, two and more, open ones their rivals. "
-    "Further left is better; below the noise floor differences are not resolved."
-)
-
-
 def section(result: DiagnosisResult, draw: InlineFigures) -> Markup:
     """Section with the figure and a table of the best explanations of each size."""
     levels = levels_of(result)
@@ -37,7 +31,7 @@ def section(result: DiagnosisResult, draw: InlineFigures) -> Markup:
         "accuracy",
         "Accuracy",
         html.paragraph(" ".join([*(f"{one[0].upper()}{one[1:]}." for one in clauses(result)), READING])),
-        draw("ladder", CAPTION),
+        draw("ladder"),
         html.table("The most accurate explanations", HEAD, rows, 2),
         _added(levels[3:]),
         html.paragraph(f"Noise floor: {phrases.accuracy(floor)}.") if floor else Markup(),

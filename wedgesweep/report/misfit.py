@@ -13,23 +13,12 @@ from wedgesweep.report import html, phrases
 from wedgesweep.report.html import Markup
 from wedgesweep.report.inline_figures import InlineFigures
 
-CAPTIONS = {
-    "waveforms": "The thick line is measured (mean over the periods), the dashed line is the base model. A "
-    "flat crest means sticking. The lowest panels show the difference; within the grey band it is noise.",
-    "phase-plane": "A loop that is flat along zero velocity sticks there; a tilted or wider loop has another "
-    "stiffness or dissipation.",
-    "harmonics": "A mark off the measured dot by more than its bar is misfit. Odd harmonics come from "
-    "physics that acts alike in both directions, even ones from physics that does not.",
-    "leftover-force": "The residual force is what the base model lacks to move as measured. A step at zero "
-    "velocity is dry friction, a slope over velocity a damper, a slope over displacement a spring; a loop "
-    "over both has memory. Grey: the misfit of the test may be noise, and so may the force.",
-}
+BY_TEST = ("waveforms", "phase-plane", "harmonics", "leftover-force")
 # Headings of the noise, and keys of diagnosis.json.
 NOISE = {
     "noise, displacement [mm]": "noise_displacement_mm",
     "noise, velocity [mm/s]": "noise_velocity_mm_per_s",
 }
-PEAK_TO_PEAK = "Peak-to-peak over frequency; lines join tests of about the same input amplitude."
 
 
 def section(result: DiagnosisResult, draw: InlineFigures, place: str = "misfit") -> Markup:
@@ -43,12 +32,12 @@ def section(result: DiagnosisResult, draw: InlineFigures, place: str = "misfit")
         _table(result),
         html.element("h3", "Motion and forces, test by test"),
         html.paragraph(_selected(result)),
-        *(draw(kind, caption, order[:TESTS_SHOWN]) for kind, caption in CAPTIONS.items()),
+        *(draw(kind, tests=order[:TESTS_SHOWN]) for kind in BY_TEST),
         _rest(draw, order[TESTS_SHOWN:]),
         html.element("h3", "Plateaus, energy and peak-to-peak"),
         draw("plateaus", _plateaus(result)),
         draw("energy", _energy(result)),
-        draw("swing", PEAK_TO_PEAK),
+        draw("swing"),
     )
 
 
@@ -115,7 +104,7 @@ def _rest(draw: InlineFigures, tests: Sequence[int]) -> Markup:
         return Markup()
     summary = "The other test" if len(tests) == 1 else f"The other {len(tests)} tests"
     return html.details(
-        summary, *(draw(kind, f"{DESCRIPTIONS[kind].capitalize()}.", tests) for kind in CAPTIONS)
+        summary, *(draw(kind, f"{DESCRIPTIONS[kind].capitalize()}.", tests) for kind in BY_TEST)
     )
 
 

@@ -8,10 +8,6 @@ from wedgesweep.report import html, phrases
 from wedgesweep.report.html import Markup
 from wedgesweep.report.inline_figures import InlineFigures
 
-CAPTION = (
-    "Force on the mass beyond the base model, without its mean: over velocity and over displacement "
-    "(averages where the tests have been, with 95 % bands), and as a map, empty where nothing was measured."
-)
 HEAD = ("form", "share explained", "95 % interval")
 NAMED = "Known forms fitted to this force: hypotheses to test, not a verdict"
 MOST = 6  # rows
@@ -24,7 +20,7 @@ def section(result: DiagnosisResult, draw: InlineFigures) -> Markup:
         return Markup()
     content: list[Markup] = [html.paragraph(_gain(force))]
     if force["offered"]:
-        content += [draw("missing-force", CAPTION), _nearest(force), html.paragraph(_further(force))]
+        content += [draw("missing-force"), _nearest(force), html.paragraph(_further(force))]
     return html.section("force", "The missing force", *content)
 
 

@@ -7,7 +7,6 @@ from typing import Any, NamedTuple
 from wedgesweep import formatting, rotation
 from wedgesweep.diagnosis_result import DiagnosisResult
 from wedgesweep.effects import EFFECTS
-from wedgesweep.equations.symbols import unit_of
 from wedgesweep.formatting import LARGE, NO_BREAK, NONE, SMALL, decimals, fixed, number, percent, short
 from wedgesweep.quantity import Quantity
 
@@ -44,7 +43,7 @@ def listing(words: Sequence[str], last: str = "and") -> str:
 def split_key(key: str) -> tuple[str, str]:
     """Name and unit of a config key."""
     quantity = Quantity(key, 0.0, "")
-    return quantity.name.replace("_", " "), unit_of(quantity)
+    return quantity.name.replace("_", " "), quantity.symbol
 
 
 def with_unit(text: str, unit: str) -> str:

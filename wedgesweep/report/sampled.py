@@ -12,18 +12,6 @@ from wedgesweep.report.html import Markup
 from wedgesweep.report.inline_figures import InlineFigures
 
 FIGURES = {"loop": "loops", "transient": "decays"}
-CAPTIONS = {
-    "loop": "Above, the thick line is the measured force, the dashed line the base model. Below, what the "
-    "models leave: a step at zero velocity is dry friction, a slope over velocity a damper, a slope on one "
-    "side only a damper that depends on the direction.",
-    "transient": "Above, the thick line is the measured motion, the dashed line the base model. In between, "
-    "the size of each swing: on a straight line that falls, friction is dry; with a damper it falls by the "
-    "same share each time. Below, what the models leave, over the grey band of the noise.",
-}
-SPECTROGRAM = (
-    "Dark is strong. What the base model leaves along the strongest line of the measured motion is a wrong "
-    "amplitude or phase, what it leaves at multiples of it is friction, a stop or play."
-)
 # Headings of the table, and keys of diagnosis.json.
 COLUMNS = {
     "loop": {"low-pass [Hz]": "lowpass_hz", "noise [N]": "noise_force_N"},
@@ -69,8 +57,8 @@ def section(result: DiagnosisResult, draw: InlineFigures, heading: str, place: s
         heading,
         html.paragraph(_overall(result, kind)),
         html.paragraph(noise_source(tests)),
-        draw(FIGURES[kind], CAPTIONS[kind], order[:TESTS_SHOWN]),
-        draw("spectrogram", SPECTROGRAM) if spectrogram.possible(result) else Markup(),
+        draw(FIGURES[kind], tests=order[:TESTS_SHOWN]),
+        draw("spectrogram") if spectrogram.possible(result) else Markup(),
         html.table("All tests; errors are rms over that of the response", head, rows),
     )
 

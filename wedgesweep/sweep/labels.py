@@ -1,7 +1,5 @@
 """Long names of a dataset's variables, in the words of its system."""
 
-from typing import TypedDict
-
 from wedgesweep.config import Config
 from wedgesweep.rotation import ROTATION
 from wedgesweep.sweep.variables import CONTINUED, OF_LIFT_OFF, TRANSIENT, VARIABLES
@@ -24,18 +22,11 @@ UNILATERAL = {
 }
 
 
-class Attributes(TypedDict, total=False):
-    """Global attributes of an oscillator's dataset; ``reference`` is what motions are compared with."""
+def attributes(config: Config) -> dict[str, str]:
+    """Return the attributes that the dataset of an oscillator needs; none for the suspension.
 
-    system: str
-    contact: str
-    excitation: str
-    reference: str
-    motion: str
-
-
-def attributes(config: Config) -> Attributes:
-    """Return the attributes that the dataset of an oscillator needs; none for the suspension."""
+    ``reference`` is what motions are compared with.
+    """
     if config.system != "oscillator":
         return {}
     return {

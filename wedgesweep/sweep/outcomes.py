@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 import xarray as xr
@@ -21,40 +21,12 @@ OPENS = "column_open_fraction"
 COLUMNS = ("status", "period", "periodicity", LIFT_OFF)
 
 
-class CaseResult(NamedTuple):
-    """How one case ended; its amplitude is in ``unit``, m or N, or "" for the scale of an input.
-
-    ``period``, ``periodicity`` and ``lift_off_fraction`` are the dataset's variables of these names.
-    """
-
-    case: "Case"
-    status: Outcome
-    message: str
-    period: int
-    periodicity: float
-    lift_off_fraction: float
-    unit: str = "m"
-
-    @property
-    def settled(self) -> bool:
-        """Whether the case has reached a steady response."""
-        return bool(settled(self.period, self.periodicity))
-
-    @property
-    def lifted(self) -> bool:
-        """Whether a bilateral joint pulled where a real one would open: the model is outside its validity."""
-        return self.lift_off_fraction > 0.0
-
-    def __str__(self) -> str:
-        where = formatting.case(*self.case, unit=self.unit)
-        return f"{where}: {self.status}: {self.message}"
-
-
 @dataclass(frozen=True)
 class Outcomes:
     """How cases ended: columns, shape (n,), as a sweep may have millions of cases.
 
-    ``describe_case`` gives one of them, the unit of its amplitude, and its message.
+    ``period``, ``periodicity`` and ``lift_off_fraction`` are the dataset's variables of these names;
+    ``describe_case`` gives one of the cases, the SI unit of its amplitude ("" for a scale), and its message.
     """
 
     status: np.ndarray
@@ -66,17 +38,10 @@ class Outcomes:
     def __len__(self) -> int:
         return len(self.status)
 
-    def __getitem__(self, place: int) -> CaseResult:
+    def described(self, place: int) -> str:
+        """A case, and how it ended."""
         case, unit, message = self.describe_case(place)
-        return CaseResult(
-            case,
-            Outcome(self.status[place]),
-            message,
-            int(self.period[place]),
-            float(self.periodicity[place]),
-            float(self.lift_off_fraction[place]),
-            unit,
-        )
+        return f"{formatting.case(*case, unit=unit)}: {Outcome(self.status[place])}: {message}"
 
     @property
     def counts(self) -> dict[Outcome, int]:
@@ -97,7 +62,7 @@ class Outcomes:
 
     @property
     def lifted(self) -> int:
-        """Number of cases that were solved, but lie outside the model's validity."""
+        """Number of cases that were solved, but outside of the model's validity: bilateral joints pull."""
         return int(((self.status == Outcome.OK) & (self.lift_off_fraction > 0.0)).sum())
 
 

@@ -6,7 +6,6 @@ import numpy as np
 from matplotlib.axes import Axes
 from scipy.signal import find_peaks
 
-from wedgesweep import formatting
 from wedgesweep.diagnosis_result import DiagnosisResult
 from wedgesweep.figures import style
 from wedgesweep.figures.diagnosis import marks, selection
@@ -85,8 +84,10 @@ def _end(signals: dict[str, np.ndarray], noise: float) -> float:
 def draw(target: Target, result: DiagnosisResult, tests: Sequence[int] | None = None) -> Panels:
     """Draw the motion of each test, the size of its swings, and what the models leave (default: six tests).
 
-    To see: swings that get smaller by the same step each time, on a straight line, are dry friction; those
-    that fall by the same share a damper. A difference that grows and turns over is a frequency that is off.
+    To see: above, the thick line is the measured motion, the dashed line the base model. In between, the
+    size of each swing: on a straight line that falls, friction is dry; with a damper it falls by the same
+    share each time. Below, what the models leave, over the grey band of the noise: a difference that
+    grows and turns over is a frequency that is off.
     """
     if "time" not in result.data:
         message = "the tests are no transients"
@@ -101,9 +102,7 @@ def draw(target: Target, result: DiagnosisResult, tests: Sequence[int] | None = 
         _draw_motion(motion, result, signals, end)
         _draw_swings(sizes, result, signals, noise)
         _draw_left(left, result, signals, noise)
-        row = result.document["misfit"]["tests"][test]
-        errors = " → ".join(formatting.error(row[f"error_{model}"]) for model in result.models)
-        motion.set_title(f"{selection.label(result.data, test)}\nerror {errors}", fontsize=8.5)
+        motion.set_title(selection.errors(result, test), fontsize=8.5)
     name, (unit, _) = str(result.data["channel"].values[0]), _unit(result)
     made.label_sides(f"{name} [{unit}]", f"swings [{unit}]", f"left [{unit}]")
     marks.legend(made, result, dots=False)

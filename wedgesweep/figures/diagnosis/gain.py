@@ -22,7 +22,6 @@ TITLES = {
     "block": "its block left out",
     "record": "its record left out",
 }
-NOISE = {"marker": "|", "linestyle": "none", "color": "black", "markersize": 11, "markeredgewidth": 1.6}
 
 
 def _draw(ax: Axes, result: DiagnosisResult, held: list[dict[str, Any]], order: list[int]) -> None:
@@ -32,7 +31,7 @@ def _draw(ax: Axes, result: DiagnosisResult, held: list[dict[str, Any]], order: 
         if base is None or extended is None:
             continue
         ax.plot([base, extended], [row, row], color="0.75", linewidth=1.2, zorder=1)
-        ax.plot(noise, row, **NOISE)
+        ax.plot(noise, row, **marks.BAR)
         ax.plot(base, row, **marks.dot("base"))
         ax.plot(extended, row, **marks.dot("extended"))
     ax.set_xscale("log")
@@ -62,7 +61,7 @@ def draw(target: Target, result: DiagnosisResult) -> Panels:
     for place, (ax, scheme) in enumerate(zip(made.axes, schemes, strict=True)):
         _draw(ax, result, [each for each in held if each["scheme"] == scheme], order)
         rows.set_rows(ax, result, np.array(order), named=place == 0)
-    handles = [Line2D([], [], **look) for look in (marks.dot("base"), marks.dot("extended"), NOISE)]
+    handles = [Line2D([], [], **look) for look in (marks.dot("base"), marks.dot("extended"), marks.BAR)]
     made.legend(handles, [*marks.names(result).values(), "noise floor"])
     ends = " to ".join(formatting.percent(end) for end in gain["ci95"] or ())
     interval = f" (95 % interval {ends})" if ends else ""

@@ -15,7 +15,6 @@ from wedgesweep.figures.panels import Panels, Target
 NAME = "harmonics"
 DESCRIPTION = "harmonics of displacement and velocity with noise bars, measured and simulated"
 
-STDS = 1.96
 LABELS = {"displacement": "$|D_h|$ [mm]", "velocity": "$|V_h|$ [mm/s]"}
 DECADES_BELOW_NOISE = 0.5
 
@@ -30,9 +29,9 @@ def _draw(ax: Axes, result: DiagnosisResult, test: int, channel: str) -> None:
     order = one["harmonic"].values
     size = magnitude(one["measured_harmonics"]) * style.MM
     noise = one["noise_std"].values * style.MM
-    bars = np.array([np.minimum(STDS * noise, 0.999 * size), STDS * noise])
+    bars = np.array([np.minimum(marks.STDS * noise, 0.999 * size), marks.STDS * noise])
     ax.errorbar(order, size, bars, ecolor="0.4", elinewidth=1.0, capsize=2, **marks.MEASURED_DOT)
-    ax.fill_between(order, STDS * noise, color="0.88", linewidth=0, zorder=0)
+    ax.fill_between(order, marks.STDS * noise, color="0.88", linewidth=0, zorder=0)
     for model in result.models:
         ax.plot(order, magnitude(one["simulated_harmonics"].sel(model=model)) * style.MM, **marks.dot(model))
     ax.set_yscale("log")
@@ -46,9 +45,9 @@ def _draw(ax: Axes, result: DiagnosisResult, test: int, channel: str) -> None:
 def draw(target: Target, result: DiagnosisResult, tests: Sequence[int] | None = None) -> Panels:
     """Draw magnitudes over the order, displacement above velocity (default: the six tests that misfit most).
 
-    To see: a mark off the black dot by more than its bar is misfit. Odd harmonics come from physics that acts
-    alike in both directions (friction), even ones from physics that does not (the column
-    angle, stops, directional friction). A harmonic in the grey area cannot be distinguished from noise.
+    To see: a mark off the measured dot by more than its bar is misfit. Odd harmonics come from physics
+    that acts alike in both directions (friction), even ones from physics that does not (the column angle,
+    stops, directional friction). A harmonic in the grey area cannot be distinguished from noise.
     """
     made = multiples(
         target,

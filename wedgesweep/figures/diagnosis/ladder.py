@@ -10,6 +10,7 @@ from matplotlib.lines import Line2D
 from wedgesweep import formatting
 from wedgesweep.diagnosis_result import DiagnosisResult
 from wedgesweep.figures import style
+from wedgesweep.figures.diagnosis import marks
 from wedgesweep.figures.panels import Panels, Target, panels
 
 NAME = "ladder"
@@ -19,7 +20,6 @@ COLORS = (style.VERMILLION, style.BLUE, style.GREEN)
 SIZES = ("no effect", "one effect", "two effects")
 UNRESOLVED = "0.9"  # grey of what is below the noise floor
 LABEL = {"facecolor": "white", "edgecolor": "none", "pad": 0.5}
-HELD_OUT = {"marker": "|", "linestyle": "none", "color": "black", "markersize": 11, "markeredgewidth": 1.6}
 # Room between the rows of one size and the next, in rows.
 BETWEEN = 0.6
 
@@ -72,7 +72,7 @@ def _draw_rows(ax: Axes, rows: Sequence[Row], left: float) -> None:
         ax.plot(x, row.place, color=row.color, markerfacecolor=face, clip_on=False, zorder=3, **look)
         if row.held_out is not None:
             held_out = max(row.held_out, left)
-            ax.plot(held_out, row.place, zorder=2, **HELD_OUT)
+            ax.plot(held_out, row.place, zorder=2, **marks.BAR)
             x = max(x, held_out)
         text = "only noise" if noise else f"{formatting.short(row.accuracy, 2)} %"
         weight = "bold" if row.best else "normal"
@@ -88,9 +88,9 @@ def _draw_rows(ax: Axes, rows: Sequence[Row], left: float) -> None:
 def draw(target: Target, result: DiagnosisResult) -> Panels:
     """Draw the smallest relative model error with which each explanation is adequate.
 
-    To see: how far each effect more takes the model, and whether the best explanation (filled) stands clear
-    of its rivals (open). A bar at the mark: tests that the fit has not seen are predicted as accurately. In
-    the grey range, below the noise floor, differences are not resolved.
+    To see: filled marks are the best explanations with no effect, one and two, open ones their rivals,
+    bars the accuracy on tests that the fit has not seen. Further left is better; below the noise floor
+    differences are not resolved.
     """
     rows = rows_of(result)
     if not rows:
@@ -125,7 +125,7 @@ def _legend(made: Panels, rows: Sequence[Row], lines: dict[str, tuple[float, str
         handles.append(Line2D([], [], color="0.4", markerfacecolor="white", **mark))
         labels.append("rival")
     if any(row.held_out is not None for row in rows):
-        handles.append(Line2D([], [], **HELD_OUT))
+        handles.append(Line2D([], [], **marks.BAR))
         labels.append("on held-out tests")
     handles += [Line2D([], [], color="0.3", linestyle=dashes) for _, dashes in lines.values()]
     labels += list(lines)

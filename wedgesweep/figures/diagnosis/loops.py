@@ -4,7 +4,6 @@ from collections.abc import Sequence
 
 from matplotlib.axes import Axes
 
-from wedgesweep import formatting
 from wedgesweep.diagnosis_result import DiagnosisResult
 from wedgesweep.figures import style
 from wedgesweep.figures.diagnosis import marks, selection
@@ -34,17 +33,12 @@ def _draw_left(ax: Axes, result: DiagnosisResult, test: int) -> None:
     ax.set_xlabel("velocity [mm/s]", fontsize=8.5)
 
 
-def errors(result: DiagnosisResult, test: int) -> str:
-    """Error of each model as a share of the measured force."""
-    row = result.document["misfit"]["tests"][test]
-    return " → ".join(formatting.error(row[f"error_{model}"]) for model in result.models)
-
-
 def draw(target: Target, result: DiagnosisResult, tests: Sequence[int] | None = None) -> Panels:
     """Draw the loop of each test, and below it the force that the models leave (default: six tests).
 
-    To see: a step at zero velocity is dry friction, a slope over velocity a damper, a slope or curve over
-    displacement a spring. A slope on one side only is damping that depends on the direction.
+    To see: above, the thick line is the measured force, the dashed line the base model. Below, what the
+    models leave: a step at zero velocity is dry friction, a slope over velocity a damper, a slope or
+    curve over displacement a spring, a slope on one side only a damper that depends on the direction.
     """
     if "measured_force" not in result.data:
         message = "the tests are no loops"
@@ -53,7 +47,7 @@ def draw(target: Target, result: DiagnosisResult, tests: Sequence[int] | None = 
     for test, (loop, left) in made:
         _draw_loop(loop, result, test)
         _draw_left(left, result, test)
-        loop.set_title(f"{selection.label(result.data, test)}\nerror {errors(result, test)}", fontsize=8.5)
+        loop.set_title(selection.errors(result, test), fontsize=8.5)
     made.label_sides("force [N]", "force left [N]")
     marks.legend(made, result, dots=False)
     made.title("Force along the imposed motion, measured and simulated", "the zero of the force is fitted")

@@ -10,6 +10,8 @@ from wedgesweep.figures.panels import Panels
 
 MEASURED = {"color": "black", "linewidth": 2.8}
 MEASURED_DOT = {"marker": "o", "linestyle": "none", "color": "black", "markersize": 4.5}
+BAR = {"marker": "|", "linestyle": "none", "color": "black", "markersize": 11, "markeredgewidth": 1.6}
+STDS = 1.96  # half the band that holds 95 % of the noise
 COLORS = {"base": style.VERMILLION, "extended": style.BLUE}
 LINES = {"base": "--", "extended": "-"}
 MARKERS = {"base": "x", "extended": "+"}

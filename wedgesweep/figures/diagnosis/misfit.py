@@ -14,7 +14,6 @@ from wedgesweep.figures.panels import Panels, Target, panels
 NAME = "misfit"
 DESCRIPTION = "misfit over noise of every test and harmonic, before and after"
 
-STDS = 1.96
 LARGEST = 1e3  # in units of noise; beyond it the colour stays
 # Pale where nothing is wrong: on paper, and with light and dark exchanged on a dark page.
 COLORS = colormaps["BuPu"]
@@ -32,7 +31,7 @@ def deviations(result: DiagnosisResult, model: str) -> np.ndarray:
 def _draw_tests(ax: Axes, result: DiagnosisResult, order: np.ndarray) -> None:
     places = np.arange(order.size)
     dof = result.data["dof"].values[order]
-    half = STDS * np.sqrt(2.0 / np.maximum(dof, 1.0))
+    half = marks.STDS * np.sqrt(2.0 / np.maximum(dof, 1.0))
     ax.barh(places, 2.0 * half, left=1.0 - half, height=0.9, color="0.85", label="noise alone (95 %)")
     for model, name in marks.names(result).items():
         ratio = result.data["q"].sel(model=model).values[order] / dof
@@ -84,6 +83,6 @@ def draw(target: Target, result: DiagnosisResult) -> Panels:
         rows.set_rows(ax, result, order, named=False)
     bar = made.colorbar(ScalarMappable(norm, COLORS), "deviation [noise std]", maps)
     style.decimal_ticks(bar.ax.yaxis)
-    made.legend(*tests.get_legend_handles_labels())
+    made.legend()
     made.title("Misfit in units of the noise, by test and by harmonic", "noise alone leaves 1")
     return made

@@ -5,20 +5,22 @@ from matplotlib.axes import Axes
 
 from wedgesweep.diagnosis_result import DiagnosisResult
 from wedgesweep.figures import labels, style
+from wedgesweep.figures.diagnosis import marks
 from wedgesweep.figures.panels import Panels, Target, panels
 
 NAME = "missing-force"
 DESCRIPTION = "empirical force that no name explains, over velocity, over displacement, and as a map"
 
-BAND = 1.96  # standard deviations
 REACH = 1.5  # of the force axes, in the largest forces of the map
 
 
 def draw(target: Target, result: DiagnosisResult) -> Panels:
     """Draw the empirical force of a diagnosis in which it predicts better than every named explanation.
 
-    To see: a step at zero velocity is friction, a slope over velocity a damper, one over displacement a
-    spring. The map is empty where no test has been; the bands are 95 % intervals.
+    To see: the force on the mass beyond the base model, without its mean: over velocity and over
+    displacement (averages where the tests have been, with 95 % bands), and as a map, empty where nothing
+    was measured. A step at zero velocity is friction, a slope over velocity a damper, one over
+    displacement a spring.
     """
     data = result.data
     if "missing_force" not in data:
@@ -31,7 +33,8 @@ def draw(target: Target, result: DiagnosisResult) -> Panels:
     force = data["missing_force"].values
     largest = float(np.nanmax(np.abs(force)))
     for ax, over, name in ((over_speed, "speed", rate), (over_place, "place", motion)):
-        _curve(ax, *(data[each].values for each in (f"force_{over}", *_averages(over))))
+        names = (f"force_{over}", f"missing_force_over_{over}", f"missing_force_over_{over}_std")
+        _curve(ax, *(data[each].values for each in names))
         # Where the force is hardly known its band leaves the panel.
         ax.set_ylim(-REACH * largest, REACH * largest)
         ax.set_xlabel(name, fontsize=9)
@@ -52,14 +55,9 @@ def draw(target: Target, result: DiagnosisResult) -> Panels:
     return made
 
 
-def _averages(over: str) -> tuple[str, str]:
-    """Names of the force averaged over place or speed, and of its standard deviation."""
-    return f"missing_force_over_{over}", f"missing_force_over_{over}_std"
-
-
 def _curve(ax: Axes, along: np.ndarray, force: np.ndarray, std: np.ndarray) -> None:
-    x = along * style.MM
+    x, half = along * style.MM, marks.STDS * std
     ax.axhline(0.0, color=style.GREY, linewidth=0.8)
-    ax.fill_between(x, force - BAND * std, force + BAND * std, color=style.BLUE, alpha=0.25, linewidth=0)
+    ax.fill_between(x, force - half, force + half, color=style.BLUE, alpha=0.25, linewidth=0)
     ax.plot(x, force, color=style.BLUE, linewidth=1.6)
     ax.locator_params(axis="x", nbins=5)

@@ -23,8 +23,9 @@ def groups(amplitude: np.ndarray) -> list[np.ndarray]:
 def draw(target: Target, result: DiagnosisResult) -> Panels:
     """Draw peak-to-peak of x - y over frequency; lines join tests of about the same input amplitude.
 
-    To see: a measured peak at another frequency than the model's points to stiffness or mass, a lower peak to
-    dissipation, and a jump that only one of them has to sticking, a stop or a coexisting response.
+    To see: lines join tests of about the same input amplitude. A measured peak at another frequency than
+    the model's points to stiffness or mass, a lower peak to dissipation, and a jump that only one of them
+    has to sticking, a stop or a coexisting response.
     """
     data, words = result.data, labels.of(result.data)
     made = panels(target, 1, size=(6.2, 3.6), margin=(0.8, 0.8))

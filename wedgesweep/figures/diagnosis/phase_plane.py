@@ -29,8 +29,8 @@ def _draw(ax: Axes, result: DiagnosisResult, test: int) -> None:
 def draw(target: Target, result: DiagnosisResult, tests: Sequence[int] | None = None) -> Panels:
     """Draw a loop per test (default: the six with the largest misfit).
 
-    To see: a loop that is flat along zero velocity sticks there; a jump of velocity at one displacement is a
-    stop or a breakaway; a tilted or wider loop has another stiffness or dissipation.
+    To see: a loop that is flat along zero velocity sticks there; a jump of velocity at one displacement
+    is a stop or a breakaway; a tilted or wider loop has another stiffness or dissipation.
     """
     made = multiples(target, result, selection.choose(result, tests), (2.5, 1.9))
     for test, (ax,) in made:

@@ -39,9 +39,10 @@ def _draw(ax: Axes, signal: np.ndarray, force: np.ndarray, pale: bool) -> None:
 def draw(target: Target, result: DiagnosisResult, tests: Sequence[int] | None = None) -> Panels:
     """Draw the residual force over displacement, below it over velocity (default: six tests, largest misfit).
 
-    To see: a step at zero velocity is dry friction, a slope over velocity a damper, a slope or curve over
-    displacement a spring, and a loop over both has memory. Colour runs through the period from violet to
-    green; the force of a test that the base model explains is grey, as it may be noise.
+    To see: the residual force is what the base model lacks to move as measured. A step at zero velocity
+    is dry friction, a slope over velocity a damper, a slope or curve over displacement a spring; a loop
+    over both has memory. Colour runs through the period from violet to green. Grey: the misfit of the
+    test may be noise, and so may the force.
     """
     data = result.data
     available = np.isfinite(data["leftover_force"].values).all(axis=-1)

@@ -48,6 +48,13 @@ def amplitude(data: xr.Dataset, value: float, digits: int) -> str:
     return f"{value * style.MM:.{digits}g} mm"
 
 
+def errors(result: DiagnosisResult, test: int) -> str:
+    """Name of a test, and the error of each model as a share of the response."""
+    row = result.document["misfit"]["tests"][test]
+    told = " → ".join(formatting.error(row[f"error_{model}"]) for model in result.models)
+    return f"{label(result.data, test)}\nerror {told}"
+
+
 def misfit_label(result: DiagnosisResult, test: int) -> str:
     """Misfit per degree of freedom of each model in a test."""
     ratios = [result.data["q"].sel(model=model) / result.data["dof"] for model in result.models]

@@ -130,9 +130,9 @@ def _draw(ax: Axes, of: Spectra, place: int, lowest: float) -> None:
 def draw(target: Target, result: DiagnosisResult, tests: Sequence[int] | None = None) -> Panels:
     """Draw a row per record (default: four): the measured motion, then what each model leaves of it.
 
-    To see: a line that rises is a sweep, and lines above it at two or three times its frequency are
-    harmonics. What the base model leaves along the main line is a wrong amplitude or phase, at one frequency
-    only a resonance; harmonics that are left are friction, stops or play.
+    To see: dark is strong. A line that rises is a sweep. What the base model leaves along the strongest
+    line of the measured motion is a wrong amplitude or phase, what it leaves at multiples of it is
+    friction, a stop or play.
     """
     if "measured" not in result.data:
         message = "the tests are no transients"

@@ -15,7 +15,6 @@ from wedgesweep.figures.panels import Panels, Target
 NAME = "waveforms"
 DESCRIPTION = "displacement and velocity over one period, measured and simulated, and the difference"
 
-STDS = 1.96  # half the band that holds 95 % of the noise
 UM = 1e6  # of a metre
 
 
@@ -32,7 +31,7 @@ def _draw(ax: Axes, result: DiagnosisResult, test: int, channel: int) -> None:
 def _draw_difference(ax: Axes, result: DiagnosisResult, test: int) -> None:
     data = result.data
     measured = data["measured_waveform"].values[test, 0]
-    half = STDS * np.sqrt(np.nansum(data["noise_std"].values[test, 0] ** 2)) * UM
+    half = marks.STDS * np.sqrt(np.nansum(data["noise_std"].values[test, 0] ** 2)) * UM
     ax.axhspan(-half, half, color="0.85", linewidth=0)
     for model in result.models:
         simulated = data["simulated_waveform"].sel(model=model).values[test, 0]
@@ -47,10 +46,9 @@ def _phase(result: DiagnosisResult) -> np.ndarray:
 def draw(target: Target, result: DiagnosisResult, tests: Sequence[int] | None = None) -> Panels:
     """Draw displacement, velocity and the difference for each test (default: the six that misfit most).
 
-    To see: where in the period the models differ from the black line, the mean of the measured periods. A
-    crest that is flat in one and round in the other means sticking; a shift in time means a delay or another
-    mass. At the bottom is simulated minus measured; what stays within the grey band (95 % of the noise of the
-    mean) is noise.
+    To see: the thick line is measured (mean over the periods), the dashed line is the base model. A crest
+    that is flat in one and round in the other means sticking, a shift in time a delay or another mass.
+    The lowest panels show the difference; within the grey band (95 %) it is noise.
     """
     made = multiples(target, result, selection.choose(result, tests), (2.5, 1.05), 3, between=0.16)
     for test, (upper, middle, lower) in made:

@@ -1,7 +1,6 @@
 """Sobol indices: how much of the variance of a result each uncertain number explains, alone and in all."""
 
 from collections.abc import Mapping
-from types import MappingProxyType
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -85,7 +84,7 @@ def draw(
     ds: xr.Dataset,
     facet: str | None = None,
     variable: str = "amplitude_ratio",
-    at: Mapping[str, Any] = MappingProxyType({}),
+    at: Mapping[str, Any] | None = None,
 ) -> Panels:
     """Draw the indices of a variable, a panel for each law or each value of ``facet``."""
     from wedgesweep import config
@@ -105,8 +104,8 @@ def draw(
         ax.set_title(title, fontsize=10)
         points = min(points, found.points)
     style.label(made.axes, "share of the variance [1]", "")
-    made.legend(*made.axes[0].get_legend_handles_labels())
+    made.legend()
     left_out = f", {given['num'] - points} left out that lack a value" if points < given["num"] else ""
     note = f"lines: {100.0 * CONFIDENCE:g} % intervals; {given['num']} points{left_out}"
-    made.title(f"Sobol indices: {over_axes.meaning(ds, variable)}", "; ".join(filter(None, (chosen, note))))
+    made.title(f"Sobol indices: {over_axes.meaning(ds, variable)}", chosen, note)
     return made

@@ -1,7 +1,6 @@
 """What tolerances do to a response: percentiles over the samples, over frequency."""
 
 from collections.abc import Mapping
-from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -26,7 +25,7 @@ def draw(
     x: str | None = None,
     facet: str | None = None,
     variable: str = "amplitude_ratio",
-    at: Mapping[str, Any] = MappingProxyType({}),
+    at: Mapping[str, Any] | None = None,
 ) -> Panels:
     """Draw bands of percentiles of a variable, a panel for each law or each value of ``facet``."""
     over_axes.variable_of(ds, variable)
@@ -49,8 +48,12 @@ def draw(
         ax.plot(place, bands[count // 2], color=style.BLUE, linewidth=1.4, label="median")
         ax.set_title(title, fontsize=10)
     style.label(made.axes, over_axes.label(ds, along), over_axes.short(ds, variable))
-    made.legend(*made.axes[0].get_legend_handles_labels())
+    made.legend()
     missing = int(ds[variable].isnull().sum())
-    notes = (chosen, f"{ds.sizes['sample']} samples", f"{missing} cases without a value" if missing else "")
-    made.title(f"Percentiles: {over_axes.meaning(ds, variable)}", "; ".join(filter(None, notes)))
+    made.title(
+        f"Percentiles: {over_axes.meaning(ds, variable)}",
+        chosen,
+        f"{ds.sizes['sample']} samples",
+        f"{missing} cases without a value" if missing else "",
+    )
     return made

@@ -7,8 +7,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 
 from wedgesweep.figures import cases, labels, style, validity
-from wedgesweep.figures.panels import Panels, Target, panels
-from wedgesweep.figures.transient import picks
+from wedgesweep.figures.panels import Panels, Target, per_law
 
 NAME = "loop"
 DESCRIPTION = "restoring force over displacement, with the area of the largest cycle in J, a panel per law"
@@ -23,7 +22,7 @@ def area(displacement: np.ndarray, force: np.ndarray) -> float:
 
 def largest_cycle(x: np.ndarray) -> slice | None:
     """The cycle of the largest peak-to-peak between two upward zero crossings; None without a whole one."""
-    starts = picks.rising(x)
+    starts = cases.rising(x)
     if starts.size < 2:
         return None
     spans = [np.ptp(x[a:b]) for a, b in pairwise(starts)]
@@ -45,10 +44,9 @@ def _draw_loop(ax: Axes, case: xr.Dataset, color: str) -> None:
 
 def draw(target: Target, ds: xr.Dataset, scale: float | None = None) -> Panels:
     """Draw a panel per law at a scale, by default the largest."""
-    chosen, laws = picks.one_scale(ds, scale), cases.laws(ds)
-    made = panels(target, len(laws))
-    for ax, law in zip(made.axes, laws, strict=True):
-        case = chosen.sel(friction_law=law)
+    chosen = cases.one_scale(ds, scale)
+    made, parts = per_law(target, chosen)
+    for ax, law, case in parts:
         _draw_loop(ax, case, style.law_style(law)["color"])
         ax.set_title(f"{law}{validity.remark(case)}", fontsize=10)
         ax.margins(y=0.12)

@@ -5,8 +5,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 
 from wedgesweep.figures import cases, labels, style, validity
-from wedgesweep.figures.panels import Panels, Target, panels
-from wedgesweep.figures.transient import picks
+from wedgesweep.figures.panels import Panels, Target, per_law
 
 NAME = "ring-down"
 DESCRIPTION = "decay of a release with its logarithmic decrement and the lines of 4F/k, a panel per law"
@@ -19,7 +18,7 @@ LOSS = "friction_decay_per_cycle"
 
 def peaks(time: np.ndarray, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Times and values of the extremes on both sides, on the parabolas through the samples around them."""
-    turns = picks.extremes(x)
+    turns = cases.extremes(x)
     turns = turns[(turns > 0) & (turns < x.size - 1)]
     before, here, after = x[turns - 1], x[turns], x[turns + 1]
     bend = before - 2.0 * here + after
@@ -70,14 +69,13 @@ def _draw_decay(ax: Axes, case: xr.Dataset, color: str, ds: xr.Dataset) -> None:
 
 def draw(target: Target, ds: xr.Dataset, scale: float | None = None) -> Panels:
     """Draw a panel per law at a scale, by default the largest."""
-    chosen, laws = picks.one_scale(ds, scale), cases.laws(ds)
-    made = panels(target, len(laws), columns=2, size=(4.2, 3.4))
-    for ax, law in zip(made.axes, laws, strict=True):
-        case = chosen.sel(friction_law=law)
+    chosen = cases.one_scale(ds, scale)
+    made, parts = per_law(target, chosen, columns=2, size=(4.2, 3.4))
+    for ax, law, case in parts:
         _draw_decay(ax, case, style.law_style(law)["color"], ds)
         ax.set_title(f"{law}{validity.remark(case)}", fontsize=10)
     style.label(made.axes, "time [s]", labels.of(ds).displacement, columns=2)
-    lines = "; dashed: dry friction alone, $4F/k$ a cycle" if np.isfinite(ds.attrs.get(LOSS, np.nan)) else ""
-    note = f"{labels.of(ds).sign}; yellow: stuck{validity.note_of_open(ds)}{lines}"
-    made.title(f"Decay at scale {chosen['scale'].item():.3g}", note)
+    lines = "dashed: dry friction alone, $4F/k$ a cycle" if np.isfinite(ds.attrs.get(LOSS, np.nan)) else ""
+    stuck = f"yellow: stuck{validity.note_of_open(ds)}"
+    made.title(f"Decay at scale {chosen['scale'].item():.3g}", labels.of(ds).sign, stuck, lines)
     return made
