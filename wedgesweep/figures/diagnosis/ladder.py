@@ -1,4 +1,4 @@
-"""How accurately no effect, one and two explain the tests, rivals beside the best."""
+"""How accurately no effect, one, two and more explain the tests, rivals beside the best."""
 
 from collections.abc import Sequence
 from typing import Any, NamedTuple
@@ -14,7 +14,7 @@ from wedgesweep.figures.diagnosis import marks
 from wedgesweep.figures.panels import Panels, Target, panels
 
 NAME = "ladder"
-DESCRIPTION = "accuracy of the best explanations with no effect, one and two, and of their rivals"
+DESCRIPTION = "accuracy of the best explanations with no effect, one, two and more, and of their rivals"
 
 COLORS = (style.VERMILLION, style.BLUE, style.GREEN)
 SIZES = ("no effect", "one effect", "two effects")
@@ -88,9 +88,9 @@ def _draw_rows(ax: Axes, rows: Sequence[Row], left: float) -> None:
 def draw(target: Target, result: DiagnosisResult) -> Panels:
     """Draw the smallest relative model error with which each explanation is adequate.
 
-    To see: filled marks are the best explanations with no effect, one and two, open ones their rivals,
-    bars the accuracy on tests that the fit has not seen. Further left is better; below the noise floor
-    differences are not resolved.
+    To see: filled marks are the best explanations with no effect, one, two and more, open ones their
+    rivals, bars the accuracy on tests that the fit has not seen. Further left is better; below the noise
+    floor differences are not resolved.
     """
     rows = rows_of(result)
     if not rows:
