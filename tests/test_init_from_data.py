@@ -225,7 +225,7 @@ SMALL += ("units-row-unknown",)
 @pytest.mark.parametrize("name", SMALL)
 def test_small_sets_get_in(tmp_path, name):
     is_loop = name == "force-negated-one-loop"
-    found = begun(tmp_path, *sorted((REAL / "small" / name).glob("*.csv")))
+    found = begun(tmp_path, *sorted((REAL / "small" / name).glob("*.csv"))[:2])
     assert {test.kind for test in found.tests} == {"loop" if is_loop else "steady"}
     assert ("input" in found.columns) != is_loop
 

@@ -116,6 +116,10 @@ TOML_FAULTS = {
         ("[measurement]\n", "[measurement]\nmodel_error = 2.0\n"),
         "measurement.model_error: 2.0 is out of range; it must be less than 1",
     ),
+    "harmonics in per cent": (
+        ("[measurement]\n", "[measurement]\ninput_harmonics_std = 1.0\n"),
+        "measurement.input_harmonics_std: 1.0 is out of range; it must be less than 1",
+    ),
     "no model": (('model = "model.toml"\n', ""), 'measurement.model: missing; write model = "model.toml"'),
     "absent model": (
         ("model.toml", "none.toml"),

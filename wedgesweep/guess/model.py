@@ -107,14 +107,16 @@ def _low_pass(test: TestRecord) -> LowPass:
     """The widest filter that keeps the noise of the acceleration small against the acceleration."""
     rate, frequency = test.sampling_rate, _frequency(test)
     order, signal = (0, test.displacement) if test.displacement is not None else (1, test.velocity)
-    for harmonics in HARMONICS:
-        low_pass = LowPass(min(max(harmonics * frequency, LOWEST * rate), HIGHEST * rate), rate)
-        if signal is None:
-            break
+    cut_offs = (min(max(harmonics * frequency, LOWEST * rate), HIGHEST * rate) for harmonics in HARMONICS)
+    filters = [LowPass(cut_off, rate) for cut_off in cut_offs]
+    if signal is None:
+        return filters[0]
+    noise = white_noise(signal, rate)
+    for low_pass in filters:
         acceleration = derivative(low_pass(signal), rate, 2 - order)
-        if low_pass.noise(white_noise(signal, rate), 2 - order) < NOISY * acceleration.std():
-            break
-    return low_pass
+        if low_pass.noise(noise, 2 - order) < NOISY * acceleration.std():
+            return low_pass
+    return filters[-1]
 
 
 def _integral(acceleration: np.ndarray, rate: float, order: int) -> np.ndarray:
