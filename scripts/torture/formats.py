@@ -1,5 +1,6 @@
 """Files of measured data in every format: damaged bytes, damaged members of archives, and odd arrays."""
 
+import logging
 import warnings
 import zipfile
 from collections.abc import Callable
@@ -55,6 +56,7 @@ def spoil(path: Path, content: bytes, draw: Random) -> None:
         ways += [lambda: _spoil_member(path, content, draw)]
     ways += [partial(_odd, path, draw)]
     # The library of a format refuses some arrays, in any way.
+    logging.disable()
     try:
         with warnings.catch_warnings(), np.errstate(all="ignore"):
             warnings.simplefilter("ignore")
@@ -62,6 +64,8 @@ def spoil(path: Path, content: bytes, draw: Random) -> None:
     except Exception:
         path.unlink(missing_ok=True)
         ways[0]()
+    finally:
+        logging.disable(logging.NOTSET)
 
 
 def _spoil_member(path: Path, content: bytes, draw: Random) -> None:

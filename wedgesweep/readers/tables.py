@@ -23,16 +23,20 @@ def xlsx(file: Path, wanted: Wanted) -> dict[str, Channel | None]:
     Numbers count the columns of the first sheet.
     """
     openpyxl = module("openpyxl")
-    book = openpyxl.load_workbook(file, read_only=True, data_only=True)
+    with file.open("rb") as stream:  # a damaged file would stay open in the library
+        sheets = [
+            (sheet.title, _even(list(sheet.iter_rows(values_only=True))))
+            for sheet in openpyxl.load_workbook(stream, read_only=True, data_only=True).worksheets
+        ]
     columns: dict[str, Channel | None] = {}
     names: dict[str, Channel | None] = {}
     others: dict[str, Channel | None] = {}
-    for number, sheet in enumerate(book.worksheets):
-        for place, cells in enumerate(zip(*_even(list(sheet.iter_rows(values_only=True))), strict=True), 1):
+    for number, (title, rows) in enumerate(sheets):
+        for place, cells in enumerate(zip(*rows, strict=True), 1):
             header, channel = _channel(cells)
             letter = openpyxl.utils.get_column_letter(place)
             sheet_names = {letter: channel, **({header: channel} if header else {})}
-            others |= {f"{sheet.title}!{name}": channel for name in sheet_names}
+            others |= {f"{title}!{name}": channel for name in sheet_names}
             if number == 0:
                 columns[header or letter] = channel
                 names |= {name: channel for name in (letter, split_unit(header)[0]) if name}
