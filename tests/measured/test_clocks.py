@@ -1,7 +1,10 @@
 """Records of every clock are brought to an even one; what was done is told, and what is wrong refused."""
 
+import re
+
 import numpy as np
 import pytest
+from scipy.signal import lfilter, lsim
 
 from tests import fixture_measured
 from tests.diagnose import test_loops
@@ -234,6 +237,42 @@ def test_stamps_of_limited_digits():
     stamps = np.array([float(f"{t:.5g}") for t in np.arange(4000) / 700.0])
     assert resolution(stamps)[[10, 100, -1]] == pytest.approx([1e-6, 1e-5, 1e-4])
     assert fit_clock(stamps, resolution(stamps)).exact
+
+
+DRIVEN = """\
+[measurement]
+model = "model.toml"
+[measurement.columns]
+time = { column = "t", unit = "s" }
+displacement = { column = "d", unit = "mm", of = "absolute" }
+input = { column = "v", unit = "N", quantity = "force" }
+[[measurement.test]]
+file = "one.csv"
+kind = "transient"
+"""
+MASS, SPRING, DAMPING = 2.0, 800.0, 6.0
+
+
+@pytest.mark.parametrize(("late", "used"), [(0.0, 20.0), (0.015, 20.0), (-0.01, 20.0), (0.015, 1.1)])
+def test_a_delay_of_the_force_of_a_transient_is_told(tmp_path, late, used):
+    """The force is random, the mass on a spring and a damper: no period, and no loop."""
+    time, random = np.arange(4000) / 200.0, np.random.default_rng(7)
+    force = lfilter([0.1], [1.0, -0.9], random.standard_normal(time.size)) * 10.0
+    displacement = 1e3 * lsim(([1.0], [MASS, DAMPING, SPRING]), force, time)[1]
+    displacement += 0.005 * displacement.std() * random.standard_normal(time.size)
+    own = f"mass_kg = {MASS}\nspring_N_per_mm = {1e-3 * SPRING}\ndamping_N_s_per_m = {DAMPING}"
+    sweep = 'friction_law = "coulomb"\nexcitation = "force"\nfrequency_hz = 1.0\namplitude_N = 1.0'
+    model = f"[oscillator]\n{own}\nnormal_force_N = 0.0\n[sweep]\n{sweep}\n"
+    rows = csv_lines(time, displacement, np.interp(time - late, time, force))
+    path = fixture_measured.write(tmp_path, f"{DRIVEN}to_s = {used}\n", model, rows)
+    warnings = consistency.warnings(measured.read(path))
+    if late == 0.0 or used < 4.0 * 2.0 * np.pi * np.sqrt(MASS / SPRING):  # few periods, which anything fits
+        assert warnings == []
+        return
+    (warning,) = warnings
+    assert f"input seems to be {'late' if late > 0.0 else 'early'} by" in warning
+    told = float(re.search(r"delay_ms = (\S+) at input", warning)[1])
+    assert told == pytest.approx(1e3 * late, rel=0.1)
 
 
 @pytest.mark.parametrize("model", [test_loops.OSCILLATOR, test_loops.WEDGE], ids=["oscillator", "wedge"])

@@ -2,22 +2,23 @@
 
 from collections.abc import Callable, Sequence
 from functools import partial
-from math import log, sqrt
+from math import log, nan, sqrt
 
 import numpy as np
 from scipy.signal import butter, sosfiltfilt
 
 from wedgesweep.measured.cycles import cut
 from wedgesweep.measured.declarations import INPUT, STEADY, TRANSIENT
-from wedgesweep.measured.frequency import estimate_frequency
+from wedgesweep.measured.frequency import FEWEST_CYCLES, estimate_frequency
 from wedgesweep.measured.measurement import Measurement, TestRecord
+from wedgesweep.measured.stationarity import median_frequency
 
 # A force gives out energy if it correlates with velocity by less than this, or by at least a LITTLE and SURE
 # standard errors of the power in BLOCKS parts of the record.
 GIVES_OUT, SURE, LITTLE, BLOCKS = -0.3, 4.0, 0.02, 8
-# Motion and force are compared up to HIGHEST times the frequency of the motion, after SHARE of the record at
-# either end, where a filter of this order settles.
-HIGHEST, SHARE, ORDER, FEWEST = 12.0, 0.05, 4, 64
+# Motion and force are compared up to HIGHEST times the frequency of the motion, in transients within a factor
+# of BAND of the median frequency, after SHARE of the record at either end, where the filter of ORDER settles.
+HIGHEST, BAND, SHARE, ORDER, FEWEST = 12.0, 2.0, 0.05, 4, 64
 # Longest delay over a period and shortest over a sampling interval that is told; number of delays that are
 # tried in each of ROUNDS; residual with the delay over that without, and over the force, that tell it.
 LONGEST, SHORTEST, TRIED, ROUNDS, GAIN, MOST_LEFT = 0.12, 0.5, 40, 2, 0.6, 0.1
@@ -33,9 +34,10 @@ CLEAR, ALIKE, SUPPORT, OTHERS = 0.25, 0.15, 0.5, 1.2
 def warnings(measurement: Measurement) -> list[str]:
     """What signs or delays of channels to look at, as "file: what; how to mend it"."""
     driven, turned = _driven(measurement), negated(measurement)
-    found = [] if len(turned) == len(driven) else _delay_warnings(driven, measurement)
+    everywhere = len(turned) == sum(map(_periodic, driven))
+    found = [] if everywhere else _delay_warnings(driven, measurement)
     if not found:
-        found = _sign_warnings(turned, len(turned) == len(driven))
+        found = _sign_warnings(turned, everywhere)
         found += _delay_warnings([test for test in driven if test not in turned], measurement)
     return found + _shape_warnings(
         [test for test in measurement.tests if test.kind == STEADY and test.input is None]
@@ -43,16 +45,19 @@ def warnings(measurement: Measurement) -> list[str]:
 
 
 def negated(measurement: Measurement) -> list[TestRecord]:
-    """Tests in which the force gives out energy."""
-    return [test for test in _driven(measurement) if _gives_out(test, measurement)]
+    """Tests in which the force gives out energy, but for transients: these give back energy as well."""
+    return [test for test in _driven(measurement) if _periodic(test) and _gives_out(test, measurement)]
 
 
 def _driven(measurement: Measurement) -> list[TestRecord]:
-    """Tests with a recorded force on a passive system, but for transients: these give back energy as well."""
+    """Tests with a recorded force on a passive system."""
     if measurement.model.system == "oscillator" and measurement.model.oscillator["contact"] == "belt":
         return []  # a belt gives out energy
-    periodic = [test for test in measurement.tests if test.kind != TRANSIENT]
-    return [test for test in periodic if _force(test, measurement) is not None]
+    return [test for test in measurement.tests if _force(test, measurement) is not None]
+
+
+def _periodic(test: TestRecord) -> bool:
+    return test.kind != TRANSIENT
 
 
 def _force(test: TestRecord, measurement: Measurement) -> np.ndarray | None:
@@ -142,21 +147,31 @@ def _delayed_force(
         if not min(map(abs, pair)) > TINY:
             return None
         return partial(_of_fundamental, 2.0 * np.pi * frequency, pair[0], pair[1]), 1.0 / frequency
-    frequency = estimate_frequency(test.time, displacement)
+    frequency = _frequency(test, displacement)
     if not frequency > 0.0 or 5.0 * frequency > test.sampling_rate or test.time.size < FEWEST:
         return None
-    low_pass = partial(
-        sosfiltfilt, butter(ORDER, _cutoff(frequency, test), fs=test.sampling_rate, output="sos")
-    )
+    filtered = partial(sosfiltfilt, _filter(test, frequency))
     parts = np.array(
-        [np.gradient(low_pass(velocity), 1.0 / test.sampling_rate), *map(low_pass, (displacement, velocity))]
+        [np.gradient(filtered(velocity), 1.0 / test.sampling_rate), *map(filtered, (displacement, velocity))]
     )
-    parts = np.vstack([parts, low_pass(np.sign(parts[2]))])
-    return partial(_of_samples, test.time, parts, low_pass(force), 1.0 / frequency), 1.0 / frequency
+    parts = np.vstack([parts, filtered(np.sign(parts[2]))])
+    return partial(_of_samples, test.time, parts, filtered(force), 1.0 / frequency), 1.0 / frequency
 
 
-def _cutoff(frequency: float, test: TestRecord) -> float:
-    return min(HIGHEST * frequency, 0.4 * test.sampling_rate)
+def _frequency(test: TestRecord, displacement: np.ndarray) -> float:
+    """Frequency (Hz) of a loop, or the median one of a transient; NaN of few periods, which anything fits."""
+    if _periodic(test):
+        return estimate_frequency(test.time, displacement)
+    found = median_frequency(displacement, test.sampling_rate)
+    return found if found * test.duration >= FEWEST_CYCLES else nan
+
+
+def _filter(test: TestRecord, frequency: float) -> np.ndarray:
+    """Sections of a low-pass filter, or of a band-pass: a transient has noise and drift beside its motion."""
+    rate = test.sampling_rate
+    if _periodic(test):
+        return butter(ORDER, min(HIGHEST * frequency, 0.4 * rate), fs=rate, output="sos")
+    return butter(ORDER, (frequency / BAND, BAND * frequency), "bandpass", fs=rate, output="sos")
 
 
 def _of_fundamental(omega: float, velocity: complex, force: complex, delay: float) -> Rows:

@@ -73,10 +73,18 @@ def stationarity(signal: np.ndarray, rate: float) -> Stationarity:
     """Measure how much a channel, shape (n,), sampled at a rate (Hz), changes."""
     halves = [_cumulative_power(half) for half in np.array_split(signal[: signal.size // 2 * 2], 2)]
     moved = float(np.abs(halves[0] - halves[1]).max())
-    step = rate / (signal.size // 2)
-    centres = [float(np.searchsorted(each, 0.5) * step) for each in halves]
+    centres = [_median(half, rate / (signal.size // 2)) for half in halves]
     levels = np.array([without_trend(part).std() for part in np.array_split(signal, PARTS)])
     return Stationarity(levels, moved, (centres[0], centres[1]))
+
+
+def median_frequency(signal: np.ndarray, rate: float) -> float:
+    """Frequency (Hz) below which half of the power of a channel (n,), sampled at a rate (Hz), lies."""
+    return _median(_cumulative_power(signal), rate / signal.size)
+
+
+def _median(cumulative: np.ndarray, step: float) -> float:
+    return float(np.searchsorted(cumulative, 0.5) * step)
 
 
 def _cumulative_power(signal: np.ndarray) -> np.ndarray:
