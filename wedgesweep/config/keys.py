@@ -11,8 +11,6 @@ from dataclasses import dataclass
 from math import inf, isfinite
 from typing import Any, Self
 
-import numpy as np
-
 from wedgesweep import toml
 from wedgesweep.hints import hint, show
 from wedgesweep.quantity import Quantity
@@ -164,13 +162,6 @@ class Number(Key):
             problems.append(f"{path}: {show(value)} is out of range; it {fault}")
             return None
         return float(value)
-
-    def in_range(self, values: np.ndarray) -> np.ndarray:
-        """Where ``read`` finds no fault in numbers, of the shape of ``values``."""
-        own, size = self.quantity, np.abs(values)
-        sized = (values == 0.0) | ((size >= SMALLEST) & (size <= LARGEST))
-        lower = (values >= own.minimum) & (values > own.above)
-        return sized & lower & (values <= own.maximum) & (values < own.below)
 
     def shape(self) -> dict[str, Any]:
         bounds = {

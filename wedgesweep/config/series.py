@@ -77,20 +77,7 @@ class Series(Several):
     def read(self, value: Any, path: str, problems: list[str]) -> list[float] | None:
         if isinstance(value, dict):
             return self._expanded(value, path, problems)
-        if isinstance(value, list) and (values := self._without_fault(value)):
-            return values
         return super().read(value, path, problems)
-
-    def _without_fault(self, given: list[Any]) -> list[float] | None:
-        """The numbers of a list in which nothing is wrong, all at once; None where there may be a fault."""
-        if not set(map(type, given)) <= {int, float}:
-            return None
-        try:
-            values = np.array(given, float)
-        except OverflowError:
-            return None
-        fine = self.item.in_range(values).all() and np.all(values[1:] > values[:-1])
-        return values.tolist() if fine else None
 
     def _faults(self, values: list[Any]) -> list[str]:
         falls = [

@@ -17,13 +17,32 @@ from wedgesweep.measured.build import build_record
 from wedgesweep.measured.declarations import DELAY_STD, INPUT, INPUT_STDS, ROOT, STEADY, UNCERTAIN, columns_of
 from wedgesweep.measured.measurement import MeasuredError, Measurement, TestRecord
 from wedgesweep.measured.model import load_model, with_numbers
+from wedgesweep.measured.plausibility import amplitude_faults, noise_faults
 from wedgesweep.measured.signals import read_signals
 
 MODEL = "give the path of a config, from here"
 
 
 def read(path: Path, model: Path | None = None) -> Measurement:
-    """Read a measured.toml and its files; raises MeasuredError with everything that is wrong."""
+    """Read measured data.
+
+    Parameters
+    ----------
+    path : Path
+        A measured.toml.
+    model : Path, optional
+        Config of the base model, instead of the one that the data name.
+
+    Returns
+    -------
+    Measurement
+        The base model and the tests, in SI units.
+
+    Raises
+    ------
+    MeasuredError
+        Lists everything that is wrong: in the file, in the data of each test and in the model.
+    """
     problems: list[str] = []
     given = _document(path, model, problems)
     measurement = given.get("measurement", {})
@@ -41,7 +60,7 @@ def read(path: Path, model: Path | None = None) -> Measurement:
     tests = _tests(path, measurement, config, problems)
     if problems or config is None:
         raise MeasuredError(problems)
-    return Measurement(
+    found = Measurement(
         path=path,
         title=measurement["title"],
         model=config,
@@ -57,6 +76,9 @@ def read(path: Path, model: Path | None = None) -> Measurement:
         model_error=measurement["model_error"],
         delay_std=hypot(*(1e-3 * each.get(DELAY_STD.key, 0.0) for each in columns.values())),
     )
+    if faults := noise_faults(found) or amplitude_faults(found):
+        raise MeasuredError([f"{path}: {fault}" for fault in faults])
+    return found
 
 
 def _stated_model(path: Path, measurement: Mapping[str, Any], problems: list[str]) -> Path | None:

@@ -19,7 +19,7 @@ from wedgesweep.simulate import Settings
 from wedgesweep.solvers.trajectory import CaseError
 from wedgesweep.sweep.backend import in_order
 from wedgesweep.sweep.cases import compile_once
-from wedgesweep.synthesize import documents, files, noise, other_tables
+from wedgesweep.synthesize import files, noise, other_tables
 from wedgesweep.synthesize.files import Table
 from wedgesweep.synthesize.motion import Motion, NoMotion, sines, steady
 from wedgesweep.synthesize.options import FORCE, QUANTITIES, Options
@@ -67,8 +67,8 @@ def synthesize(
         for i, test in enumerate(truth.tests)
     ]
     model = Config(config.document | {"effects": {}, "title": "model on trial"})
-    measured = documents.measured(directory.name, config, plan, options)
-    solution = documents.truth_document(truth, steady, motions, options)
+    measured = files.measured(directory.name, config, plan, options)
+    solution = files.truth_document(truth, steady, motions, options)
     files.write(directory, measured, model, tables, solution)
     return [
         f"{_name(i, test)}: not steady after "

@@ -9,10 +9,16 @@ from typing import Any
 
 import numpy as np
 
-from wedgesweep import toml
+from wedgesweep import rotation, toml
 from wedgesweep.config import Config
 from wedgesweep.errors import InputError
 from wedgesweep.files import beside
+from wedgesweep.measured.declarations import LOOP, STEADY, TRANSIENT
+from wedgesweep.synthesize.motion import RTOL, Motion
+from wedgesweep.synthesize.options import Options
+from wedgesweep.synthesize.plan import Plan
+from wedgesweep.synthesize.truth import Truth
+from wedgesweep.units import UNITS
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,3 +68,78 @@ def _write_csv(path: Path, table: Table) -> None:
     formats = ["%.7f", *["%.7g"] * (len(columns) - 1)]
     content, header = np.column_stack(list(columns.values())), ",".join(columns)
     np.savetxt(path, content, fmt=formats, delimiter=",", header=header, comments="")
+
+
+def measured(title: str, config: Config, plan: Plan, options: Options) -> dict[str, Any]:
+    """The document of measured.toml."""
+    tests = []
+    for i, test in enumerate(plan.tests):
+        keys: dict[str, Any] = {"file": f"test-{i:02d}.csv"}
+        if test.kind != STEADY:
+            undriven = options.record_input is not None and test.kind == TRANSIENT and not test.driven
+            tests.append({**keys, "kind": test.kind, **({"undriven": True} if undriven else {})})
+            continue
+        keys["frequency_hz"] = test.frequency_hz
+        if test.known and options.record_input is None:
+            keys[config.amplitude_unit.key] = test.amplitude
+            keys["amplitude_std"] = test.amplitude_std or options.amplitude_error
+        tests.append(keys)
+    motion = config.simulated_motion[0]
+    velocity = {"column": "v", "unit": "mm/s", "derived": options.noise == "differentiated", "of": motion}
+    columns: dict[str, dict[str, Any]] = {
+        "time": {"column": "t", "unit": "s"},
+        "displacement": {"column": "d", "unit": "mm", "of": motion},
+    }
+    kinds = {test.kind for test in plan.tests}
+    if kinds != {LOOP}:
+        columns["velocity"] = velocity
+    if LOOP in kinds:
+        columns["force"] = {"column": "F", "unit": "N"}
+    if options.record_input is not None and any(t.driven or t.kind == STEADY for t in plan.tests):
+        unit = next(iter(UNITS[options.record_input]))
+        columns["input"] = {"column": "u", "unit": unit, "quantity": options.record_input}
+    head = {"title": title, "model": "model.toml", "columns": columns, "uncertain": plan.uncertain}
+    document = {"measurement": {**head, "test": tests}}
+    if not config.turns:
+        return document
+    for channel in columns.values():
+        channel["unit"] = rotation.UNITS.get(channel["unit"], channel["unit"])
+    return rotation.written(document)
+
+
+def truth_document(truth: Truth, steady: Truth, motions: list[Motion], options: Options) -> dict[str, Any]:
+    """The document of truth.json: what a diagnosis should find, in the keys and units of a config."""
+    tests: list[dict[str, Any]] = [
+        {
+            "frequency_hz": test.plan.frequency_hz,
+            f"amplitude_{test.plan.unit}": test.amplitude,
+            f"nominal_amplitude_{test.plan.unit}": test.plan.amplitude,
+            "phase_deg": test.phase_deg,
+            "stray_vibration_phase_deg": test.stray_phase_deg,
+            "sampling_hz": test.sampling_hz,
+            "settle_periods": motion.settle_periods,
+        }
+        for test, motion in zip(steady.tests, motions, strict=True)
+    ]
+    tests += [
+        {"kind": test.plan.kind, "motion": test.plan.motion, "sampling_hz": test.sampling_hz}
+        for test in truth.tests
+        if test.plan.kind != STEADY
+    ]
+    document = {
+        "effects": truth.config.document["effects"],
+        "friction_law": truth.law,
+        "uncertain": _uncertain(truth),
+        "noise": options.noise,
+        "level": options.level,
+        "seed": options.seed,
+        "solver": {"method": "radau", "rtol": RTOL},
+        "tests": tests,
+    }
+    return rotation.written(document) if truth.config.turns else document
+
+
+def _uncertain(truth: Truth) -> dict[str, Any]:
+    """True factors by effect, and the numbers of other uncertain effects."""
+    found = truth.uncertain.by_key(truth.x)
+    return {name: numbers.get("scale", numbers) for name, numbers in found.items()}
