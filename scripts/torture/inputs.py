@@ -20,52 +20,15 @@ Kind = Callable[[Specimens, Path, Random], Command]
 
 LINES_OF_LOGGERS = ("# bench 7", "% x", "Date;1.1.2024", "", "sep=;", "[s],[mm],[mm/s]", "s;mm;mm/s")
 ENCODINGS = ("utf-8", "utf-8-sig", "utf-16", "utf-16-le", "latin-1", "utf-32")
-FIGURES = (
-    "amplitude-ratio",
-    "bifurcation",
-    "peak-to-peak",
-    "phase-portrait",
-    "response",
-    "stick-map",
-    "friction-laws",
-)
+FIGURES = ("amplitude-ratio", "bifurcation", "peak-to-peak", "phase-portrait", "response", "stick-map")
+FIGURES += ("friction-laws",)
 OF_A_DIAGNOSIS = ("misfit", "candidates", "ladder", "gain")
 PICKS = ("--beta", "--frequency", "--amplitude", "--law", "--format")
 WORDS = (
-    *(
-        "0",
-        "-1",
-        "1",
-        "1e200",
-        "1e-200",
-        "1e9",
-        "nan",
-        "inf",
-        "-inf",
-        "99",
-        "0.3",
-        "1.2",
-        "x",
-        "",
-        "\0",
-        "ü",
-        "9" * 400,
-    ),
-    *(
-        "coulomb",
-        "COULOMB",
-        "png",
-        "pdf",
-        "config.toml",
-        "out",
-        "out/x.nc",
-        "/dev/null",
-        "/dev/zero",
-        "/",
-        ".",
-        "-",
-        "--",
-    ),
+    *("0", "-1", "1", "1e200", "1e-200", "1e9", "nan", "inf", "-inf", "99", "0.3", "1.2", "x"),
+    *("", "\0", "ü", "9" * 400),
+    *("coulomb", "COULOMB", "png", "pdf", "config.toml", "out", "out/x.nc", "/dev/null", "/dev/zero"),
+    *("/", ".", "-", "--"),
 )
 
 
