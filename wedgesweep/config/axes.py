@@ -55,21 +55,13 @@ def flat(given: Mapping[str, Any]) -> dict[str, Any]:
     """Dotted keys of a table that was written with or without quotes."""
     found: dict[str, Any] = {}
     for name, value in given.items():
-        if (
-            isinstance(value, dict)
-            and name.split(".")[0] in TABLES
-            and name.count(".") < 2
-            and _nested(value)
-        ):
+        # A range or a distribution is no part of a dotted key.
+        nested = isinstance(value, dict) and not {"start", "distribution"} & value.keys()
+        if nested and name.split(".")[0] in TABLES and name.count(".") < 2:
             found |= flat({f"{name}.{inner}": each for inner, each in value.items()})
         else:
             found[name] = value
     return found
-
-
-def _nested(value: Mapping[str, Any]) -> bool:
-    """Whether a table is a part of a dotted key, and not a range or a distribution."""
-    return not {"start", "distribution"} & value.keys()
 
 
 def given_number(document: Mapping[str, Any], key: str) -> float:

@@ -10,7 +10,6 @@ from wedgesweep.config.declarations import root
 from wedgesweep.config.keys import Key, Number
 from wedgesweep.config.series import Series
 from wedgesweep.config.tables import Table
-from wedgesweep.quantity import Quantity
 
 # Limits of a quantity, in the unit of its key.
 LIMITS = ("default", "minimum", "above", "maximum", "below")
@@ -68,7 +67,8 @@ class Turned:
             return key
         self.names[called] = key.key, 1.0 / factor
         own = key.item if isinstance(key, Series) else key
-        quantity = _quantity(own.quantity, called, factor)
+        limits = {limit: factor * getattr(own.quantity, limit) for limit in LIMITS}
+        quantity = replace(own.quantity, key=called, **limits)
         item = replace(own, key=called, default=rotation.scaled(own.default, factor), quantity=quantity)
         if not isinstance(key, Series):
             return item
@@ -85,10 +85,6 @@ class Turned:
             name, factor = self.names.get(key, (key, 1.0))
             found[name] = rotation.scaled(value, factor) if key in self.names else self.back(value)
         return found
-
-
-def _quantity(quantity: Quantity, key: str, factor: float) -> Quantity:
-    return replace(quantity, key=key, **{name: factor * getattr(quantity, name) for name in LIMITS})
 
 
 def _with_default(key: Any, path: tuple[str, ...], default: float) -> Any:

@@ -103,17 +103,13 @@ def runs_of(columns: Sequence[Column]) -> list[list[Column]]:
         return _numbered_runs(columns)
     edges = [0, *starts[1:], len(columns)]
     parts = [list(columns[first:last]) for first, last in pairwise(edges)]
-    patterns = {tuple(_pattern(column.label) for column in part) for part in parts}
+    patterns = {tuple(re.sub(r"\d+", "", column.label) for column in part) for part in parts}
     first = parts[0][0].channel.values
     same = all(np.array_equal(first, part[0].channel.values, equal_nan=True) for part in parts)
     marked = all(RUN.search(part[-1].label) for part in parts)
     if len(patterns) == 1 and len(parts[0]) > 1 and (marked or not same):
         return parts
     return [[column for i, column in enumerate(columns) if i not in starts[1:]]]
-
-
-def _pattern(label: str) -> str:
-    return re.sub(r"\d+", "", label)
 
 
 def _numbered_runs(columns: Sequence[Column]) -> list[list[Column]]:

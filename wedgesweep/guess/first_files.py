@@ -41,9 +41,10 @@ def write(path: Path, files: Sequence[Path]) -> list[Path]:
     if problems:
         raise InputError(problems)
     tests, model, found = tests_of(surveys), path.parent / MODEL, UNKNOWN
+    turns = any(angular(each.unit) for each in tests[0].run.channels.values())
     for _ in range(MOST_LOOKS):
         write_text(path, document.measured(path, model, tests, surveys, found))
-        write_text(model, document.model(found, _is_forced(tests[0]), _turns(tests[0])))
+        write_text(model, document.model(found, _is_forced(tests[0]), turns))
         try:
             measurement = measured.read(path)
         except InputError:
@@ -74,7 +75,3 @@ def _with_signs(tests: Sequence[Guessed], measurement: Measurement) -> list[Gues
 def _is_forced(test: Guessed) -> bool:
     given = test.run.channels.get(INPUT)
     return test.kind == LOOP or (given is not None and (given.keys or {}).get("quantity") == "force")
-
-
-def _turns(test: Guessed) -> bool:
-    return any(angular(each.unit) for each in test.run.channels.values())
