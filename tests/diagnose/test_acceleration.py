@@ -19,7 +19,7 @@ RIGS = {
     "oscillator": (OSCILLATOR, {"viscous_damping": {"coefficient": 2.0}}, 12.0, 500.0, 0.01),
     "wedge": (WEDGE, {"friction_level": {"scale": 1.2}}, 1.0, 1500.0, 0.02),
 }
-RELEASES, SECONDS = (1.0, -0.7, 0.5), 40.0
+RELEASES = (1.0, -0.7, 0.5)
 CANDIDATES = ["viscous_damping", "friction_level", "bolster_stiffness"]
 CHANNEL = 'acceleration = {{ column = "a", unit = "m/s^2"{} }}\n'
 
@@ -42,17 +42,12 @@ def write(folder, rig, tables, columns):
     return folder / "measured.toml"
 
 
-LATER = [pytest.param(name, marks=pytest.mark.acceptance) if name == "wedge" else name for name in RIGS]
-
-
 @pytest.mark.acceptance
-@pytest.mark.parametrize("name", LATER)
-def test_a_cause_is_named_from_an_accelerometer_on_a_mass_that_is_released(tmp_path, name):
-    rig, effects, travel, rate, noise = RIGS[name]
+def test_a_cause_is_named_from_an_accelerometer_on_a_mass_that_is_released(tmp_path):
+    rig, effects, travel, rate, noise = RIGS["oscillator"]
     rng, tables = np.random.default_rng(1), []
     for share in RELEASES:
-        seconds = SECONDS * 0.05 * (500.0 / rate)
-        test = PlannedTest(0.0, 0.0, "mm", 0.0, True, "transient", "release", seconds, None, share * travel)
+        test = PlannedTest(0.0, 0.0, "mm", 0.0, True, "transient", "release", 2.0, None, share * travel)
         a = made(rig, test, rate, effects).acceleration
         # An accelerometer that does not stand upright shows a share of gravity.
         tables.append([np.arange(a.size) / rate, a + 0.3 + noise * rng.standard_normal(a.size)])

@@ -254,8 +254,7 @@ def test_one_gain_of_the_input_serves_all_tests(of):
 
 
 @pytest.mark.acceptance
-@pytest.mark.parametrize("sign", [1.0, -1.0])
-def test_noise_that_input_and_response_share_counts_with_its_sign(sign):
+def test_noise_that_input_and_response_share_counts_with_its_sign():
     """One noise in both channels, as from a common supply."""
     rng, ratios = np.random.default_rng(0), []
     for seed in range(6):
@@ -263,7 +262,7 @@ def test_noise_that_input_and_response_share_counts_with_its_sign(sign):
         tests = []
         for each in own.tests:
             common = 0.02 * rng.normal(size=each.time.size)
-            shown = each.displacement + sign * common * each.displacement.std()
+            shown = each.displacement - common * each.displacement.std()
             tests.append(replace(each, displacement=shown, input=each.input + common * each.input.std()))
         q, dof = misfit(harmonic_data(replace(own, tests=tuple(tests))), CAUSE)
         ratios.append(q / dof)

@@ -74,19 +74,24 @@ def verdict_of(base, *others, thresholds=verdict.DEFAULT):
     return decide(base, others, thresholds)
 
 
-def test_noise_needs_no_cause():
-    found = verdict_of(explained(715.0), explained(708.0, "stribeck"), explained(712.0, "preload"))
-    assert (found.verdict, found.cause) == ("nothing-missing", None)
-
-
-def test_a_strong_cause_is_named():
-    found = verdict_of(explained(5000.0), explained(705.0, "stribeck"), explained(2000.0, "preload"))
-    assert (found.verdict, found.cause.effects) == ("named", ("stribeck",))
-
-
-def test_weak_evidence_is_only_consistent():
-    found = verdict_of(explained(1000.0), explained(705.0, "stribeck"), explained(800.0, "preload"))
-    assert found.verdict == "consistent-with"
+@pytest.mark.parametrize(
+    ("base", "stribeck", "preload", "tests", "expected"),
+    [
+        (715.0, 708.0, 712.0, 12, "nothing-missing"),
+        (5000.0, 705.0, 2000.0, 12, "named"),
+        (1000.0, 705.0, 800.0, 12, "consistent-with"),
+        (5000.0, 705.0, 709.0, 12, "tied"),
+        (5000.0, 705.0, 2000.0, 2, "data-insufficient"),
+        (5000.0, 1500.0, 1600.0, 12, "none-of-mine"),
+        (5000.0, 4999.0, 5000.0, 12, "none-of-mine"),
+    ],
+)
+def test_evidence_decides(base, stribeck, preload, tests, expected):
+    both = explained(stribeck, "stribeck", tests=tests), explained(preload, "preload", tests=tests)
+    found = verdict_of(explained(base, tests=tests), *both)
+    causes = ("named", "consistent-with", "tied")
+    assert (found.verdict, found.cause) == (expected, both[0] if expected in causes else None)
+    assert found.rivals == (both[1:] if expected == "tied" else ())
 
 
 def test_a_model_error_may_be_larger_in_single_tests():
@@ -250,24 +255,6 @@ def test_a_tolerable_base_model_needs_no_cause_that_held_out_tests_do_not_confir
     assert on_held_out_tests(found, base, 0.5, [0.1, 1.0]).verdict == "consistent-with"
 
 
-def test_equally_good_explanations_are_tied():
-    found = verdict_of(explained(5000.0), explained(705.0, "stribeck"), explained(709.0, "preload"))
-    assert found.verdict == "tied"
-    assert [each.effects for each in found.rivals] == [("preload",)]
-
-
-def test_a_misfit_that_nobody_explains():
-    found = verdict_of(
-        explained(5000.0), explained(1500.0, "stribeck"), explained(1400.0, "stribeck", "preload")
-    )
-    assert (found.verdict, found.cause, found.alternatives) == ("none-of-mine", None, ())
-
-
-def test_a_misfit_that_nobody_even_touches():
-    found = verdict_of(explained(5000.0), explained(4999.0, "stribeck"))
-    assert found.verdict == "none-of-mine"
-
-
 FAR = ("bolster_mass",)
 ALLOWED = Thresholds(least_gain=600.0)
 
@@ -302,11 +289,6 @@ def test_many_equal_explanations_say_that_the_data_are_poor(least):
     found = verdict_of(explained(5000.0), *others)
     assert found.verdict == "data-insufficient"
     assert found.alternatives == tuple(others)
-
-
-def test_two_tests_name_nothing():
-    found = verdict_of(explained(5000.0, tests=2), explained(705.0, "stribeck", tests=2))
-    assert (found.verdict, found.cause) == ("data-insufficient", None)
 
 
 def test_a_pair_must_beat_its_parts():

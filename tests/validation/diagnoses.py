@@ -3,10 +3,11 @@
 They take a quarter of an hour, and run in ``make validate``, not with the tests.
 """
 
+import look_alikes
 import pytest
 from validation.judge import ABSTAINING
 
-from tests.validation import checks, examples
+from tests.validation import checks, examples, test_look_alikes
 from tests.validation.laboratory import BENCH, CLEAN, GUIDE_FRICTION, Specimen, diagnose, make
 from wedgesweep import measured
 from wedgesweep.diagnose import diagnosis, work
@@ -59,6 +60,11 @@ def test_an_effect_that_is_no_candidate_is_not_named(tmp_path):
 @pytest.mark.parametrize("name", sorted(set(examples.TRUTH) - set(examples.QUICK)))
 def test_example_comes_out_right(name, tmp_path):
     examples.comes_out_right(name, tmp_path)
+
+
+@pytest.mark.parametrize("name", sorted(set(look_alikes.MADE) - set(test_look_alikes.FEW)))
+def test_a_look_alike_comes_out_right(name):
+    test_look_alikes.comes_out_right(name)
 
 
 @pytest.mark.parametrize("name", examples.IMPERFECT)

@@ -17,18 +17,13 @@ def _truth(folder):
 
 TRUTH, HARD_TRUTH = _truth(EXAMPLES), _truth(HARD_EXAMPLES)
 IMPERFECT = sorted(name for name, truth in HARD_TRUTH.items() if truth["kind"] == "imperfect")
-# Those that a test run has time for, see test_scale.py: nothing hidden, and one effect.
+# Those that a test run has time for: nothing hidden, and one effect.
 QUICK = ("set-017", "set-052")
 
 
 def comes_out_right(name, folder):
     """Diagnose an example and compare the answer with its truth."""
-    is_right(name, diagnose(EXAMPLES / name / "measured.toml", folder / "found"))
-
-
-def is_right(name, found):
-    """Compare the diagnosis of an example with its truth."""
-    truth = TRUTH[name]
+    found, truth = diagnose(EXAMPLES / name / "measured.toml", folder / "found"), TRUTH[name]
     hidden = set(truth["truth"])
     if truth["kind"] == "clean":
         assert found.verdict == "nothing-missing"

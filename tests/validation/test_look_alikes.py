@@ -27,37 +27,33 @@ CLOSE = {
 }
 
 
-def found_in(name):
-    return look_alikes.diagnosed(look_alikes.MADE[name]())
+# One of each kind of recording; make validate has all of them.
+FEW = (
+    *("linear, random force", "stiffening, random force", "damper with play of 1 mm", "spring that stiffens"),
+    *("damper that differs by direction", "pendulum from 60 deg", "damper on a bushing"),
+)
+
+
+def comes_out_right(name):
+    """Diagnose a look-alike and compare the answer with what is expected."""
+    found = look_alikes.diagnosed(look_alikes.MADE[name]())
+    causes = {cause["effect"] for cause in found.causes}
+    if name in NOTHING:
+        assert found.verdict == "nothing-missing"
+    elif name in NAMED:
+        assert (found.verdict, causes) in (("named", NAMED[name]), ("consistent-with", NAMED[name]))
+        assert not causes & FRICTION
+    else:
+        assert (found.verdict, found.causes) == ("none-of-mine", [])
+        best = [sorted(level["effects"]) for level in found.document["ladder"][1:]]
+        assert best[: len(CLOSE[name])] == CLOSE[name]
 
 
 def test_no_look_alike_is_left_out():
-    assert {*NAMED, *NOTHING, *CLOSE} == set(look_alikes.MADE)
+    assert {*NAMED, *NOTHING, *CLOSE} == set(look_alikes.MADE) > set(FEW)
 
 
 @pytest.mark.acceptance
-def test_loops_of_a_damper_as_it_is_modelled():
-    assert found_in("damper").verdict == "nothing-missing"
-
-
-@pytest.mark.acceptance
-@pytest.mark.parametrize("name", NAMED)
-def test_the_cause_is_named(name):
-    found = found_in(name)
-    causes = {cause["effect"] for cause in found.causes}
-    assert (found.verdict, causes) in (("named", NAMED[name]), ("consistent-with", NAMED[name]))
-    assert not causes & FRICTION
-
-
-@pytest.mark.acceptance
-@pytest.mark.parametrize("name", CLOSE)
-def test_nothing_is_named_where_candidates_only_come_close(name):
-    found = found_in(name)
-    assert (found.verdict, found.causes) == ("none-of-mine", [])
-    best = [sorted(level["effects"]) for level in found.document["ladder"][1:]]
-    assert best[: len(CLOSE[name])] == CLOSE[name]
-
-
-@pytest.mark.acceptance
-def test_a_linear_oscillator_under_a_random_force():
-    assert found_in("linear, random force").verdict == "nothing-missing"
+@pytest.mark.parametrize("name", FEW)
+def test_a_look_alike_comes_out_right(name):
+    comes_out_right(name)

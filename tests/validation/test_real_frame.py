@@ -20,16 +20,6 @@ here = pytest.mark.skipif(not DATA.is_dir(), reason="the recordings are not here
 
 @pytest.mark.acceptance
 @here
-def test_wall_friction_leads(tmp_path):
-    real_frame.copy(DATA, tmp_path)
-    found = real_frame.linear(tmp_path, real_frame.AS_RECORDED, 250)
-    assert found.leading == "guide_friction"
-    assert found.force == pytest.approx(PUBLISHED[250], rel=0.03)
-    # Late channels turn phases, as friction does, but leave the amplitudes of harmonics.
-    assert found.next_best == "channel_delay"
-    assert found.leading_accuracy < found.next_accuracy / verdict.CLEAR
-
-
 @here
 @pytest.mark.acceptance
 def test_wall_friction_leads_and_predicts_the_other_recording(tmp_path):
@@ -37,6 +27,8 @@ def test_wall_friction_leads_and_predicts_the_other_recording(tmp_path):
         linear, (accuracy, _) = found.linear, found.predicted
         assert linear.leading == "guide_friction"
         assert linear.force == pytest.approx(PUBLISHED[grams], rel=0.03)
+        # Late channels turn phases, as friction does, but leave the amplitudes of harmonics.
+        assert linear.next_best == "channel_delay" or grams != 250
         assert linear.leading_accuracy < linear.next_accuracy / verdict.CLEAR
         # The other recording, scaled by the weights of the discs, says as much as this one.
         assert accuracy < 1.15 * linear.leading_accuracy

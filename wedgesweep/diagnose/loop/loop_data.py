@@ -16,7 +16,7 @@ from wedgesweep.config import Config
 from wedgesweep.diagnose import work
 from wedgesweep.diagnose.decorrelation import Decorrelation
 from wedgesweep.diagnose.evaluation import NoStart, NuisanceParameter, Point, Scenario
-from wedgesweep.diagnose.fit_data import Arrays, Motion
+from wedgesweep.diagnose.fit_data import BY_TEST, Arrays, Motion
 from wedgesweep.diagnose.loop.recording import Recording
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.next_test.sensors import Sensors, median_test
@@ -194,18 +194,13 @@ class LoopData(SampledData):
             for name in ("displacement", "velocity")
         )
         noise = np.array([self.recordings[number].noise for number, _ in self.chosen])
-        by_sample, measured = ("test", "sample"), self.measured * seen
+        by_sample, meaning = ("test", "sample"), "simulated, with the fitted zero"
         variables = {
             "displacement": (by_sample, position, "m", "imposed displacement"),
             "velocity": (by_sample, velocity, "m/s", "imposed velocity"),
-            "measured_force": (by_sample, measured, "N", "measured force"),
-            "simulated_force": (
-                ("model", *by_sample),
-                simulated * seen,
-                "N",
-                "simulated, with the fitted zero",
-            ),
-            "force_noise": (("test",), noise, "N", "noise of a compared force"),
+            "measured_force": (by_sample, self.measured * seen, "N", "measured force"),
+            "simulated_force": (("model", *by_sample), simulated * seen, "N", meaning),
+            "force_noise": (BY_TEST, noise, "N", "noise of a compared force"),
         }
         return Arrays(variables, {})
 

@@ -58,21 +58,13 @@ def arrays(data: "TransientData", simulated: np.ndarray) -> Arrays:
         part = simulated[:, t, : size * own.coefficients]
         in_time[:, t, :size, :count] = own.in_time(part.reshape(-1, size, own.coefficients))
     time = np.array([own.begins + own.step * np.arange(longest) for own in data.windows])
+    noise = np.array([[each.std for each in own.spectra] for own in data.windows])
+    meaning = "simulated motion, with the fitted zero"
     variables = {
         "time": (BY_SAMPLE, time, "s", "time from the first sample of the record"),
         "measured": (BY_CHANNEL, measured, CHANNEL_UNIT, "measured motion"),
-        "simulated": (
-            ("model", *BY_CHANNEL),
-            in_time,
-            CHANNEL_UNIT,
-            "simulated motion, with the fitted zero",
-        ),
-        "sample_noise": (
-            ("test", "channel"),
-            np.array([[each.std for each in own.spectra] for own in data.windows]),
-            CHANNEL_UNIT,
-            "noise of a sample",
-        ),
+        "simulated": (("model", *BY_CHANNEL), in_time, CHANNEL_UNIT, meaning),
+        "sample_noise": (BY_CHANNEL[:2], noise, CHANNEL_UNIT, "noise of a sample"),
     }
     orders = max((own.orders for own in data.windows), key=len)
     return Arrays(variables, {"channel": [CHANNELS[order] for order in orders]})
