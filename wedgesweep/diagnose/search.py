@@ -54,8 +54,6 @@ MARKED = 9.0
 # Work (see work.py) that a search may spend for each test, of which it counts at least so many, and the share
 # that pairs get even if unknown amplitudes made single effects expensive.
 WORK_PER_TEST, FEWEST_COUNTED, PAIRS_SHARE = 1e5, 12, 1.0 / 3.0
-# Effects with states or an iteration of their own take longest to fit, and begin first.
-SLOWEST = ("lift_off", "load_dependent_friction", "column_compliance", "fixture_resonance", "presliding")
 
 # Names of what may help a fit, in the order in which it is tried.
 OTHER_NUISANCES, INFLUENTIAL = "other nuisances", "influential tests left out"
@@ -137,9 +135,9 @@ class Search:
             return self.data.search_nuisances(model, points)
         return model.evaluate_all(points)
 
-    def each(self, function: Callable[[Any], Any], items: Iterable[Any]) -> list[Any]:
-        """Results of a function for all items, in their order."""
-        return self._each(function, list(items))
+    def each(self, function: Callable[[Any], Any], items: Iterable[Any], what: str = "") -> list[Any]:
+        """Results of a function for all items, in their order; ``what``: stage whose progress is reported."""
+        return self._each(function, list(items), what)
 
     def each_affordable(
         self,
@@ -198,12 +196,6 @@ class Search:
         kept = [each for each, earlier in zip(outcomes, before, strict=True) if each and earlier < beyond]
         work.count(kept)
         return [each.result for each in kept]
-
-    def each_effect(self, function: Callable[[str], Any]) -> dict[str, Any]:
-        """Results of a function for every candidate effect, in their order; the slowest begin first."""
-        order = sorted(self.effects, key=lambda effect: effect not in SLOWEST)
-        found = dict(zip(order, self._each(function, order, "single effects"), strict=True))
-        return {effect: found[effect] for effect in self.effects}
 
 
 class Explained(NamedTuple):
@@ -308,7 +300,8 @@ def single_fits(known: Explained) -> Explained:
         search.finished.append(one.explanation)
         return one
 
-    found: dict[str, SingleFit] = {k: one for k, one in search.each_effect(fitted).items() if one}
+    both = zip(search.effects, search.each(fitted, search.effects, "single effects"), strict=True)
+    found: dict[str, SingleFit] = {effect: one for effect, one in both if one}
     aligned = [one.data for effect, one in found.items() if _brings_alignment(search.data, effect)]
     return Explained(
         replace(search, effects=tuple(found), data=aligned[-1] if aligned else search.data),

@@ -13,7 +13,7 @@ import numpy as np
 
 from wedgesweep.diagnose.changes import SLIGHT
 from wedgesweep.diagnose.evaluation import Comparison, Evaluation, NuisanceParameter, Point, Scenario
-from wedgesweep.diagnose.fit_data import Arrays, FitData, Motion
+from wedgesweep.diagnose.fit_data import INPUT_GAIN, Arrays, FitData, Motion
 from wedgesweep.diagnose.model import Fit, Model
 from wedgesweep.diagnose.next_test.sensors import Sensors
 from wedgesweep.diagnose.noise_spectrum import NoiseSpectrum
@@ -43,9 +43,6 @@ IMPLAUSIBLE = 0.3
 HELD = 1e-4
 # A covariance is replaced if the variance of some combination of residuals changes by more than this factor.
 CHANGED = 1.1
-# Newton steps from the best start phase without a covariance, and in rad their largest length and a
-# negligible one.
-PHASE_STEPS, PHASE_LENGTH, NEGLIGIBLE = 12, 0.05, 1e-7
 
 
 class SteadyResponse(NamedTuple):
@@ -129,12 +126,13 @@ class HarmonicData(WhitenedHarmonics, FitData):
         return stated, at_rest(self.tests)
 
     def records(self, scenario: Scenario) -> np.ndarray:
-        """Parameter records (T,) of the tests in a scenario."""
+        """Parameter records (T,) of the tests in a scenario; the gain of inputs is part of ``inputs_of``."""
         amplitudes = self.inputs_of(scenario)
+        values = {name: each for name, each in scenario.values.items() if name != INPUT_GAIN}
         if self.models is None:
-            return simulation.records(self.model, self.law, scenario.values, self.omega, amplitudes)
+            return simulation.records(self.model, self.law, values, self.omega, amplitudes)
         each = [
-            simulation.records(model, self.law, scenario.values, self.omega[t : t + 1], amplitudes[t : t + 1])
+            simulation.records(model, self.law, values, self.omega[t : t + 1], amplitudes[t : t + 1])
             for t, model in enumerate(self.models)
         ]
         return stacked(each)
@@ -251,27 +249,6 @@ class HarmonicData(WhitenedHarmonics, FitData):
     def covariance(self, scenario: Scenario) -> np.ndarray | None:
         """Of residuals over the noise of the responses (T, m, m) in a scenario; None for exact inputs."""
         return stated_input.covariance(self, scenario) if self.harmonics_std else None
-
-    def start_phase(self, simulated: np.ndarray, other: np.ndarray | float = 0.0) -> np.ndarray:
-        """The phase of the least misfit under the covariance, by Newton's method."""
-        phase = super().start_phase(simulated, other)
-        if self.whitening is None:
-            return phase
-        orders, precision = self.turning_orders, self.whitening @ self.whitening
-        for _ in range(PHASE_STEPS):
-            turned = self.rotated(simulated, phase)
-            left, slope = real(self.whitened - other - turned), real(-1j * orders * turned)
-            weighted = (precision @ slope[..., None])[..., 0]
-            gauss = (weighted * slope).sum(-1)
-            bend = gauss + ((precision @ left[..., None])[..., 0] * real(orders**2 * turned)).sum(-1)
-            # Far from the minimum the misfit may bend the other way.
-            bend = np.where(bend > 0.0, bend, gauss)
-            step = np.divide(-(weighted * left).sum(-1), bend, out=np.zeros_like(bend), where=bend > 0.0)
-            step = np.clip(step, -PHASE_LENGTH, PHASE_LENGTH)
-            phase = phase + step
-            if np.abs(step).max(initial=0.0) < NEGLIGIBLE:
-                break
-        return phase
 
     def bare(self) -> Self:
         """The data as if inputs were exactly known."""

@@ -15,8 +15,9 @@ from wedgesweep.config import Config
 from wedgesweep.diagnose.steady.simulation import LONGEST_SIMULATED, ToneTiming
 from wedgesweep.diagnose.steady.spectra import SIMULATED, Spectrum
 
-# Number of start phases that are tried, and of Newton steps from the best one; their largest length (rad).
-PHASES, NEWTON_STEPS, NEWTON_LENGTH = 256, 4, 0.02
+# Number of start phases that are tried, and of Newton steps from the best one at most; in rad their largest
+# length and a negligible one.
+PHASES, NEWTON_STEPS, NEWTON_LENGTH, NEGLIGIBLE = 256, 12, 0.05, 1e-7
 # Least variance of a combination of residuals, over that of the responses' own noise: sampling errors of the
 # noise that channels and input share may make it smaller, or negative.
 LEAST_VARIANCE = 0.1
@@ -277,18 +278,27 @@ class WhitenedHarmonics:
     def start_phase(self, simulated: np.ndarray, other: np.ndarray | float = 0.0) -> np.ndarray:
         """Rotation (rad) that brings whitened simulations (..., T, C, H) closest to the measurement.
 
-        ``other``: part of the whitened measurement (..., T, C, H) that is not to be compared.
+        It is that of the least misfit under the covariance, by Newton's method from the best one of PHASES
+        without it. ``other``: part of the whitened measurement (..., T, C, H) that is not to be compared.
         """
-        overlap = ((self.whitened - other) * simulated.conj()).sum(-2)[..., : self.shape[1]]
+        seen, orders = self.whitened - other, self.turning_orders
+        overlap = (seen * simulated.conj()).sum(-2)[..., : self.shape[1]]
         wave = np.fft.fft(overlap, PHASES, axis=-1)  # orders 0..H-1 in place of 1..H: corrected below
         angles = 2.0 * pi * np.arange(PHASES) / PHASES
         phase = angles[np.argmax((wave * np.exp(-1j * angles)).real, axis=-1)]
         for _ in range(NEWTON_STEPS):
-            turned = overlap * np.exp(-1j * self.orders * phase[..., None])
-            slope = (self.orders * turned.imag).sum(-1)
-            curvature = -(self.orders**2 * turned.real).sum(-1)
-            step = np.divide(-slope, curvature, out=np.zeros_like(slope), where=curvature < 0.0)
-            phase = phase + np.clip(step, -NEWTON_LENGTH, NEWTON_LENGTH)
+            turned = self.rotated(simulated, phase)
+            parts = seen - turned, -1j * orders * turned, orders**2 * turned
+            left, slope, bend = (self.decorrelated(real(each)) for each in parts)
+            gauss = (slope**2).sum(-1)
+            bend = gauss + (bend * left).sum(-1)
+            # Far from the minimum the misfit may bend the other way.
+            bend = np.where(bend > 0.0, bend, gauss)
+            step = np.divide(-(slope * left).sum(-1), bend, out=np.zeros_like(bend), where=bend > 0.0)
+            step = np.clip(step, -NEWTON_LENGTH, NEWTON_LENGTH)
+            phase = phase + step
+            if np.abs(step).max(initial=0.0) < NEGLIGIBLE:
+                break
         return phase
 
     def rotated(self, simulated: np.ndarray, phase: np.ndarray) -> np.ndarray:
