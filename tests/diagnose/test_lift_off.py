@@ -31,7 +31,7 @@ def decided(data):
     return finding, score_test.scores(search, base.fit, scans)
 
 
-@pytest.mark.few(1)
+@pytest.mark.acceptance
 @pytest.mark.parametrize(("law", "restitution"), [("static-dynamic", 0.0), ("coulomb", 0.4)])
 def test_it_is_named_with_its_restitution(law, restitution):
     finding, _ = decided(measured(law, {NAME: {"restitution": restitution}}))
@@ -64,6 +64,7 @@ def test_its_fit_finds_uncertain_numbers_of_its_own():
     assert found.fit.values[NAME]["restitution"] == pytest.approx(restitution, abs=0.05)
 
 
+@pytest.mark.acceptance
 def test_a_bench_whose_joints_hold_misses_nothing_though_they_pull():
     data = measured("static-dynamic", {})
     finding, scores = decided(data)
@@ -73,6 +74,7 @@ def test_a_bench_whose_joints_hold_misses_nothing_though_they_pull():
     assert score.detectable == 0.0
 
 
+@pytest.mark.acceptance
 def test_tests_in_which_nothing_lifts_off_cannot_show_it():
     data = measured("coulomb", {NAME: {"restitution": 0.3}}, QUIET)
     search, base, *_ = base_fit(Search.of(data, (NAME,)))
