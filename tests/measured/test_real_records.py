@@ -5,7 +5,6 @@ from pathlib import Path
 import pytest
 
 from tests.command import invoke
-from wedgesweep import measured
 
 REAL = Path(__file__).parents[3] / "shared" / "real"
 pytestmark = pytest.mark.skipif(not REAL.is_dir(), reason="the recordings are not here")
@@ -68,10 +67,3 @@ def test_rests_of_an_exact_displacement_do_not_count(tmp_path):
     effects = "viscous_damping,stribeck"
     told = invoke("diagnose", path, "-o", tmp_path / "out", "--no-report", "--effects", effects)
     assert "Nothing is missing" in told
-
-
-def test_days_are_read_as_days(tmp_path):
-    path = copied(tmp_path, "excel-days", ('unit = "s"', 'unit = "excel"'))
-    days = measured.read(path).tests[0]
-    assert days.time[0] == pytest.approx(0.0, abs=1e-6)
-    assert days.sampling_rate == pytest.approx(400.0, rel=1e-4)
