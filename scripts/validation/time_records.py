@@ -19,9 +19,9 @@ from wedgesweep.config import from_document
 from wedgesweep.effects import EFFECTS
 from wedgesweep.natural_units import FREQUENCY, LENGTH
 from wedgesweep.synthesize import plan
-from wedgesweep.synthesize.loops import loop
 from wedgesweep.synthesize.motion import NoMotion
 from wedgesweep.synthesize.options import NOISES
+from wedgesweep.synthesize.other_tables import loop
 from wedgesweep.synthesize.plan import PlannedTest
 from wedgesweep.synthesize.transients import transient
 

@@ -10,7 +10,7 @@ from tests import fixture_formats, fixture_measured
 from tests.command import invoke
 from tests.fixture_measured import MEASURED, csv_lines, lines, vibration
 from wedgesweep import measured
-from wedgesweep.measured.decimation import shortened
+from wedgesweep.measured.build import shortened
 from wedgesweep.readers.survey import survey
 
 

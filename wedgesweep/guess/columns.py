@@ -50,6 +50,8 @@ COMPUTED = 0.02
 EVEN, UNEVEN = 0.9, 0.75
 # Points at which columns are compared.
 POINTS = 3000
+# Numbers beyond it are damage: their differences and squares may be no numbers.
+HUGE = 1e100
 # A time in seconds has steps (s) between these.
 STEPS = (1e-7, 0.5)
 # Angles (in the file) beyond which they are degrees; displacements that are metres.
@@ -123,8 +125,7 @@ def _numbered_runs(columns: Sequence[Column]) -> list[list[Column]]:
 
 def is_time(column: Column) -> bool:
     """Whether a column may be time: by its name or dates, and because it goes on."""
-    values = column.channel.values
-    values = values[np.isfinite(values)]
+    values = _numbers(column)
     if values.size < 3 or not values[0] < values[-1]:
         return False
     if re.fullmatch(COUNTS, column.label.strip().lower()):
@@ -154,8 +155,12 @@ def choose(columns: Sequence[Column]) -> Run:
     return Run(None if time is None else _clock(time), chosen, tuple(left))
 
 
+def _numbers(column: Column) -> np.ndarray:
+    return column.channel.values[np.abs(column.channel.values) < HUGE]
+
+
 def _varies(column: Column) -> bool:
-    values = column.channel.values[np.isfinite(column.channel.values)]
+    values = _numbers(column)
     return bool(values.size and np.ptp(values) > 1e-12 * np.abs(values).max())
 
 

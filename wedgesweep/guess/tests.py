@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from wedgesweep.guess.columns import FORCE, INPUT, MOTIONS, Chosen, Run, choose, runs_of, with_units
+from wedgesweep.guess.columns import FORCE, HUGE, INPUT, MOTIONS, Chosen, Run, choose, runs_of, with_units
 from wedgesweep.guess.kind import WHOLE, Part, from_release, kind_of, parts_of
 from wedgesweep.measured.declarations import LOOP, STEADY, TRANSIENT
 from wedgesweep.readers.survey import Survey
@@ -139,7 +139,7 @@ def _evenly(test: Guessed) -> tuple[np.ndarray, dict[str, np.ndarray]]:
     stamps = _stamps(test)
     channels = test.run.channels
     own = {name: each.values for name, each in channels.items() if "file" not in (each.keys or {})}
-    good = np.isfinite(stamps)
+    good = np.abs(stamps) < HUGE
     order = np.argsort(stamps[good], kind="stable")
     time = np.linspace(stamps[good].min(), stamps[good].max(), int(good.sum()))
     signals = {}
@@ -147,6 +147,6 @@ def _evenly(test: Guessed) -> tuple[np.ndarray, dict[str, np.ndarray]]:
         if values.size != stamps.size:
             continue
         x, y = stamps[good][order], values[good][order]
-        known = np.isfinite(y)
+        known = np.abs(y) < HUGE
         signals[name] = np.interp(time, x[known], y[known])
     return time, {**dict.fromkeys(channels, np.zeros(time.size)), **signals}

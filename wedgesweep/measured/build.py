@@ -1,12 +1,11 @@
 """Builds the record of a test in SI units from the numbers in a file; faults name their place."""
 
 from collections.abc import Iterator, Mapping
-from math import nan
+from math import isfinite, nan
 from typing import Any
 
 import numpy as np
 
-from wedgesweep.measured import decimation
 from wedgesweep.measured.cycles import slope_of_means
 from wedgesweep.measured.declarations import (
     AMPLITUDE,
@@ -30,6 +29,12 @@ from wedgesweep.periodogram import without_trend
 
 # Bounds of a channel in SI units, and the variation that is rounding, over its size.
 LARGEST, SMALLEST, ROUNDING = 1e12, 1e-15, 1e-13
+# Samples per period that must remain, so that all harmonics that are compared pass the filter unchanged.
+FEWEST_PER_PERIOD = 200
+# Half length of the filter in samples that remain, edge of its pass band over the new Nyquist frequency, and
+# beta of its Kaiser window: stop band and ripple of -118 dB (Oppenheim and Schafer, Discrete-Time Signal
+# Processing, sec. 7.5).
+HALF_LENGTH, EDGE, BETA = 20, 0.8, 12.0
 
 
 def build_record(
@@ -58,7 +63,7 @@ def build_record(
     frequency = _frequency(given, columns, time)
     if given.get("detrend", False):
         columns = {each: _straightened(time, samples, frequency) for each, samples in columns.items()}
-    columns, time, thinned = _shortened(given, columns, time, frequency)
+    columns, time, thinned = _limited(given, columns, time, frequency)
     if (known := columns.pop(KNOWN_FORCE, None)) is not None:
         # Only the sum with the force that is measured, or drives the mass, acts.
         beside = "force" if given.get("kind") == LOOP else INPUT
@@ -139,10 +144,48 @@ def _straightened(time: np.ndarray, samples: np.ndarray, frequency: float) -> np
     return samples - slope_of_means(time, samples, frequency) * (time - time.mean())
 
 
-def _shortened(
+def _limited(
     given: Mapping[str, Any], columns: dict[str, np.ndarray], time: np.ndarray, frequency: float
 ) -> tuple[dict[str, np.ndarray], np.ndarray, str]:
     """A steady record of at most MOST_SAMPLES, the times, and a remark if samples were left out."""
     if time.size <= MOST_SAMPLES or given.get("kind", STEADY) != STEADY:
         return columns, time, ""
-    return decimation.shortened(columns, time, frequency, MOST_SAMPLES)
+    return shortened(columns, time, frequency, MOST_SAMPLES)
+
+
+def shortened(
+    columns: Mapping[str, np.ndarray], time: np.ndarray, frequency: float, most: int
+) -> tuple[dict[str, np.ndarray], np.ndarray, str]:
+    """Shorten records that vibrate at a frequency, in cycles per unit of time.
+
+    Parameters
+    ----------
+    columns : mapping of arrays, shape (n,)
+        Channels over an even ``time``, shape (n,).
+    frequency : float
+        Frequency of the vibration; NaN if it is not known.
+    most : int
+        Number of samples that may remain.
+
+    Returns
+    -------
+    dict, array, str
+        Shorter channels, their times, and what was done in words.
+    """
+    factor = -(-time.size // most)
+    rate = (time.size - 1) / (time[-1] - time[0])
+    if not isfinite(frequency) or rate / factor < FEWEST_PER_PERIOD * frequency:
+        remark = f"cut to the first {most} of {time.size} samples"
+        return {name: samples[:most] for name, samples in columns.items()}, time[:most], remark
+    kept = slice(HALF_LENGTH, -HALF_LENGTH)
+    thinned = {name: _decimated(samples, factor)[kept] for name, samples in columns.items()}
+    remark = f"low-passed and decimated from {time.size} samples to one in {factor}"
+    return thinned, time[::factor][kept], remark
+
+
+def _decimated(samples: np.ndarray, factor: int) -> np.ndarray:
+    from scipy.signal import firwin, resample_poly
+
+    taps = firwin(2 * HALF_LENGTH * factor + 1, EDGE / factor, window=("kaiser", BETA))
+    mean = samples.mean()
+    return resample_poly(samples - mean, 1, factor, window=taps) + mean
