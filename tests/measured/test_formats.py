@@ -94,6 +94,11 @@ FAULTS = {
     ),
     "huge": ([lines()[0], "0.0000,1e200,1", *lines()[2:]], "", "displacement: 1e+197 in SI"),
     "tiny": (["t,d,v", *(f"{i / 1000:.3f},{i % 7}e-200,{i % 5}" for i in range(600))], "", "is constant"),
+    "huge, and twice": (
+        [*lines()[:9], *(f"{i / 1000:.4f},{x}e307,1" for i, x in enumerate((9, -9, 9), 8)), *lines()[12:]],
+        "",
+        "displacement: 9e+304 in SI",
+    ),
     "huge times": (["t,d,v", *(f"{i}e200,{i % 7},{i % 5}" for i in range(600))], "", "time: 5.99e+202 in SI"),
 }
 

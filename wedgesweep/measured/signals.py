@@ -58,6 +58,7 @@ class Signal:
 Signals = dict[str, Signal]
 
 
+@np.errstate(over="ignore")  # numbers in the files may be of any size, and are refused later
 def read_signals(
     folder: Path, given: Mapping[str, Any], measurement: Mapping[str, Any], problems: list[str]
 ) -> tuple[Signals, list[str]]:
