@@ -182,18 +182,6 @@ def test_a_single_panel_is_drawn_into_given_axes(kind, dataset):
         figures.draw(dataset, kind, ax=left)
 
 
-@pytest.mark.few(3)
-@pytest.mark.parametrize("kind", KINDS)
-def test_several_panels_are_drawn_into_a_given_subfigure(kind, dataset):
-    figure = Figure(layout="constrained", figsize=(12.0, 5.0))
-    left, right = figure.subfigures(1, 2)
-    assert figures.draw(dataset, kind, figure=right) is figure
-    figure.draw_without_rendering()
-    assert len(right.axes) > 1
-    assert right.get_suptitle()
-    assert not left.axes
-
-
 def test_a_case_is_selected_by_single_values(dataset):
     one = dataset.sel(friction_law="coulomb", beta=1.0, amplitude=1e-3)
     assert len(figures.draw(one, "phase-portrait").axes) == 1

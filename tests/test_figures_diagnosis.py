@@ -165,20 +165,17 @@ def test_svg_is_the_same_each_time():
     assert svg(draw("plateaus", build())) == svg(draw("plateaus", build()))
 
 
-def test_one_panel_is_drawn_into_given_axes_and_several_into_a_subfigure():
-    figure = Figure(layout="constrained", figsize=(12.0, 5.0))
+def test_one_panel_is_drawn_into_given_axes():
+    figure, result = Figure(layout="constrained"), build()
     left, right = figure.subfigures(1, 2)
     ax = left.subplots()
-    result = build()
     assert figures.draw(result, "plateaus", ax=ax) is figure
-    figures.draw(result, "waveforms", figure=right, tests=[0, 1])
     figure.draw_without_rendering()
     assert ax.has_data()
     assert ax.get_title().startswith("Plateaus")
-    assert len(right.axes) == 6
     with pytest.raises(ValueError, match=r"^waveforms: 3 panels do not fit into one Axes"):
         figures.draw(result, "waveforms", ax=ax, tests=[0])
-    assert figures.draw(result, "phase-plane", ax=Figure().subplots(), tests=[0]).axes[0].get_title()
+    assert figures.draw(result, "phase-plane", ax=right.subplots(), tests=[0]) is figure
 
 
 @pytest.mark.parametrize("kind", OF_TRANSIENTS)

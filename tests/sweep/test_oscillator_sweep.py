@@ -70,7 +70,7 @@ def test_dataset_says_what_it_holds(contact, excitation):
     assert ds["supplied_energy"].values == pytest.approx(ds["dissipated_energy"].values, rel=1e-4, abs=1e-9)
     # Those take more cases, or joints that open.
     for kind in sorted(set(figures.FIGURES) - {"bifurcation", "stick-map", "lift-off-map"}):
-        figures.draw(ds, kind).draw_without_rendering()
+        assert figures.draw(ds, kind).get_suptitle()
 
 
 def test_frictionless_dataset_is_linear():

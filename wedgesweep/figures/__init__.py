@@ -31,13 +31,7 @@ FIGURES = catalogue.declared(__path__[0], __name__)
 DESCRIPTIONS = {name: kind.description for name, kind in FIGURES.items()}
 
 
-def draw(
-    data: "xr.Dataset | DiagnosisResult",
-    name: str,
-    ax: "Axes | None" = None,
-    figure: "Figure | SubFigure | None" = None,
-    **picks: Any,
-) -> "Figure":
+def draw(data: "xr.Dataset | DiagnosisResult", name: str, ax: "Axes | None" = None, **picks: Any) -> "Figure":
     """Draw one figure of a sweep's dataset or of a diagnosis.
 
     Parameters
@@ -49,10 +43,7 @@ def draw(
         Name of the figure: a key of ``figures.FIGURES``, or of ``figures.diagnosis.FIGURES``.
     ax : matplotlib.axes.Axes, optional
         Axes to draw into, for a figure that has a single panel with these data, such as ``"stick-map"``
-        with one friction law.
-    figure : matplotlib.figure.Figure or SubFigure, optional
-        Empty figure to draw into, best one with ``layout="constrained"``. Without ``ax`` and ``figure`` a
-        new figure is made, in a size that suits its panels.
+        with one friction law. By default a new figure is made, in a size that suits its panels.
     **picks
         Options of the figure, by the names that ``figures.FIGURES[name].picks`` lists: ``beta`` (frequency
         ratio), ``amplitude`` or ``amplitudes`` (m) of a dataset, ``tests`` (indices) of a diagnosis; and
@@ -84,7 +75,7 @@ def draw(
             checked = cases.checked(data, kind.needs, kind.case_lists)
             if (law := picks.pop(LAW, None)) is not None:
                 checked = cases.of_law(checked, law)
-        panels = kind.load().draw(figure if ax is None else ax, checked, **picks)
+        panels = kind.load().draw(ax, checked, **picks)
         if isinstance(checked, xr.Dataset):
             named = (str(checked.attrs.get(name, "")) for name in ("title", "model"))
             panels.head("; ".join(filter(None, named)))

@@ -19,7 +19,7 @@ HANDLE = 8  # characters that the mark of a label in a legend takes
 TITLE_MARGIN = 0.08  # inches
 
 # Where to draw; None stands for a new figure.
-Target = Axes | Figure | SubFigure | None
+Target = Axes | None
 Size = tuple[float, float]  # inches
 
 
@@ -107,14 +107,13 @@ def panels(
     columns = min(columns, count)
     rows = -(-count // columns)
     width = max(columns * size[0] + margin[0], 5.2)
-    if target is None:
-        target = Figure(figsize=(width, rows * size[1] + margin[1]), layout="constrained")
-    grid = target.subplots(rows, columns, sharex=share, sharey=share, squeeze=False).ravel()
+    figure = Figure(figsize=(width, rows * size[1] + margin[1]), layout="constrained")
+    grid = figure.subplots(rows, columns, sharex=share, sharey=share, squeeze=False).ravel()
     for spare in grid[count:]:
         spare.remove()
     for ax in grid[:count]:
         style.dress(ax)
-    return Panels(target, list(grid[:count]))
+    return Panels(figure, list(grid[:count]))
 
 
 def per_law(

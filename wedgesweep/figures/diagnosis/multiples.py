@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure, SubFigure
+from matplotlib.figure import Figure
 
 from wedgesweep.diagnosis_result import DiagnosisResult
 from wedgesweep.figures import style
@@ -47,7 +47,7 @@ def multiples(
     if isinstance(target, Axes):
         grid = panels(target, parts * len(tests))
     else:
-        grid = _grid(target, len(tests), size, parts, between)
+        grid = _grid(len(tests), size, parts, between)
     made = Multiples(grid.figure, grid.axes, grid.embedded, tests, parts)
     for test, (first, *_) in made:
         first.set_title(
@@ -56,7 +56,7 @@ def multiples(
     return made
 
 
-def _grid(target: Figure | SubFigure | None, count: int, size: Size, parts: int, between: float) -> Panels:
+def _grid(count: int, size: Size, parts: int, between: float) -> Panels:
     """Give everything a fixed place: a layout by measuring would take longer than the drawing itself."""
     columns = min(COLUMNS, count)
     rows = -(-count // columns)
@@ -64,7 +64,7 @@ def _grid(target: Figure | SubFigure | None, count: int, size: Size, parts: int,
     across = columns * size[0] + (columns - 1) * BESIDE
     width = max(LEFT + across + BESIDE, 6.0)
     height = TOP + rows * (TITLE + cell + BELOW) + BOTTOM
-    figure = Figure(figsize=(width, height)) if target is None else target
+    figure = Figure(figsize=(width, height))
     grid = figure.add_gridspec(
         rows,
         columns,
