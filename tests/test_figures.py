@@ -13,6 +13,7 @@ from wedgesweep.figures import (
     cases,
     catalogue,
     friction_laws,
+    lines,
     maps,
     response,
     style,
@@ -35,6 +36,10 @@ def labels(figure):
     """Labels of all axes, also those of second axes and colour bars."""
     axes = [*figure.axes, *(child for ax in figure.axes for child in ax.child_axes)]
     return [text for ax in axes for text in (ax.get_xlabel(), ax.get_ylabel()) if text]
+
+
+def legend(figure):
+    return str([text.get_text() for legend in figure.legends for text in legend.get_texts()])
 
 
 def everything_failed(ds):
@@ -264,7 +269,7 @@ def test_what_the_base_model_knows_is_not_said_of_effects_with_mechanics_of_thei
     for figure in (ratio, sticking):
         figure.draw_without_rendering()
     assert not ratio.axes[0].get_legend_handles_labels()[1]
-    assert "breakaway" not in str([text.get_text() for text in sticking.legends[0].get_texts()])
+    assert "breakaway" not in legend(sticking)
     heavy = dataset.assign_attrs(
         config=CROSSING.replace("[effects.cross_slip]\nvelocity_mm_per_s = 5.0\n", "")
     )
@@ -318,14 +323,11 @@ def test_response_picks_a_beta_that_moves(dataset):
 
 @pytest.mark.parametrize("kind", ["amplitude-ratio", "peak-to-peak", "stick-map"])
 def test_cases_outside_of_validity_and_unsettled_ones_are_marked(kind, dataset):
-    figure = figures.draw(dataset, kind)
-    told = str([text.get_text() for legend in figure.legends for text in legend.get_texts()])
+    told = legend(figures.draw(dataset, kind))
     assert "lift-off: outside of validity" in told
     assert "not settled" in told
     plain = dataset.assign(lift_off_fraction=0.0 * dataset["lift_off_fraction"], period=1 + dataset["status"])
-    told = str(
-        [text.get_text() for legend in figures.draw(plain, kind).legends for text in legend.get_texts()]
-    )
+    told = legend(figures.draw(plain, kind))
     assert "lift-off" not in told
     assert "not settled" not in told
 
@@ -393,6 +395,9 @@ def test_many_cases_are_a_density(dataset, monkeypatch):
     (mesh,) = ax.collections
     shares = mesh.get_array()
     assert 0.0 < shares.min() <= shares.max() <= 1.0
+    assert "not settled" in legend(figures.draw(dataset, "lines"))
+    monkeypatch.setattr(lines, "MOST_MARKED", 50)
+    assert "not settled" not in legend(figures.draw(dataset, "lines"))
 
 
 def test_phase_portraits_show_motion_by_default(dataset):

@@ -77,7 +77,9 @@ def _draw_density(ax: Axes, law: xr.Dataset, top: float) -> QuadMesh:
     counts = np.stack([np.histogram(row[np.isfinite(row)], edges)[0] for row in ratios], axis=1)
     shares = np.ma.masked_equal(counts / ratios.shape[1], 0.0)
     beta = cell_edges(law["beta"].values, False)
-    return ax.pcolormesh(beta, edges, shares, cmap=style.SEQUENTIAL, rasterized=True)
+    # Most amplitudes may share a bin where nothing slips: a linear scale would show that alone.
+    norm = LogNorm(1.0 / ratios.shape[1], 1.0)
+    return ax.pcolormesh(beta, edges, shares, cmap=style.SEQUENTIAL, norm=norm, rasterized=True)
 
 
 def _draw_law(ax: Axes, law: xr.Dataset, norm: LogNorm, factor: float) -> bool:

@@ -19,6 +19,8 @@ ANY_AXES = True
 
 # So many colours a legend tells apart; more values have a colour bar.
 MOST_NAMED = 6
+# Marks of more cases would cover all lines; the title tells their share.
+MOST_MARKED = 5000
 
 
 def _draw_panel(
@@ -34,7 +36,8 @@ def _draw_panel(
         ax.plot(
             x, y, color=color, linewidth=1.2, marker="." if len(x) <= validity.FEW_POINTS else "", label=name
         )
-        validity.mark(ax, x, y, case, color)
+        if part["status"].size <= MOST_MARKED:
+            validity.mark(ax, x, y, case, color)
         style.mark_missing(ax, x[np.isnan(y)] if y.dtype.kind == "f" else x[:0], color)
 
 
@@ -60,7 +63,8 @@ def draw(
     if bar is not None and layout.other:
         made.colorbar(bar, over_axes.label(ds, layout.other))
     handles = [] if bar is not None else made.axes[0].get_legend_handles_labels()[0]
-    made.legend([*(handles if layout.other else []), *validity.handles(ds)])
+    marks = validity.handles(ds) if parts[0][1]["status"].size <= MOST_MARKED else []
+    made.legend([*(handles if layout.other else []), *marks])
     made.title(over_axes.meaning(ds, variable), over_axes.picked(ds, layout), validity.shares(ds))
     return made
 
