@@ -9,11 +9,12 @@ import pytest
 
 from tests import fixture_diagnosis
 from wedgesweep import diagnosis_result, formatting, report, rotation
-from wedgesweep.diagnosis_result import VERDICTS
+from wedgesweep.diagnosis_result import VERDICTS, DiagnosisResult
 from wedgesweep.effects import EFFECTS
 from wedgesweep.errors import InputError, SweepError
 from wedgesweep.report import html, ladder, phrases, summary
 from wedgesweep.report.inline_figures import InlineFigures
+from wedgesweep.report.sentence import sentence as sentence_of
 
 # The verdict whose page has its figures; test_figures_diagnosis.py draws those of all verdicts.
 WITH_FIGURES = "named"
@@ -55,6 +56,11 @@ def page_of(directory, document):
     """The report of a result whose document has been changed."""
     (directory / diagnosis_result.JSON).write_text(json.dumps(document), encoding="utf-8")
     return Page(report.write(directory).read_text(encoding="utf-8"))
+
+
+def told(document, data):
+    """The answer of a diagnosis in a sentence."""
+    return plain(sentence_of(DiagnosisResult(document, data)))
 
 
 def plain(text):
@@ -200,9 +206,8 @@ def test_effects_beyond_two_are_listed_with_their_gain(tmp_path):
 
 
 @pytest.mark.parametrize("verdict", VERDICTS)
-def test_sentence(verdict, tmp_path):
-    fixture_diagnosis.write(tmp_path, verdict)
-    sentence = plain(report.sentence(tmp_path))
+def test_sentence(verdict):
+    sentence = told(*fixture_diagnosis.build(verdict))
     for words in EXPECTED[verdict]:
         assert words in sentence
     # One sentence: a stop only inside numbers and at the end.
@@ -276,17 +281,16 @@ def test_sentence(verdict, tmp_path):
         ),
     ],
 )
-def test_the_reason_for_a_reservation_is_given(verdict, change, words, tmp_path):
-    document, _ = fixture_diagnosis.write(tmp_path, verdict)
+def test_the_reason_for_a_reservation_is_given(verdict, change, words):
+    document, data = fixture_diagnosis.build(verdict)
     for part, values in change.items():
         document[part] = {**(document[part] or {"excess_removed": 0.9}), **values}
-    (tmp_path / diagnosis_result.JSON).write_text(json.dumps(document), encoding="utf-8")
-    assert words in plain(report.sentence(tmp_path))
+    assert words in told(document, data)
 
 
-def test_sentence_says_what_the_budget_left_out(tmp_path):
-    document, _ = fixture_diagnosis.write(tmp_path, "none-of-mine")
-    complete = plain(report.sentence(tmp_path))
+def test_sentence_says_what_the_budget_left_out():
+    document, data = fixture_diagnosis.build("none-of-mine")
+    complete = told(document, data)
     first = {"what": "pairs with one of the best single effects", "left_out": 60, "of": 76}
     then = {"what": "pairs with an effect of the best pairs", "left_out": 20, "of": 20}
     for untried, words in (
@@ -294,25 +298,22 @@ def test_sentence_says_what_the_budget_left_out(tmp_path):
         ([first, then], f"tried 80 more fits, first of all {first['what']} (60 of 76)."),
     ):
         document["untried"] = untried
-        (tmp_path / diagnosis_result.JSON).write_text(json.dumps(document), encoding="utf-8")
-        sentence = plain(report.sentence(tmp_path))
+        sentence = told(document, data)
         assert sentence.startswith(complete.removesuffix("."))
         assert sentence.endswith(words)
         assert not re.search(r"\.\s", sentence)
     document["never_tried"] = [["ageing", "preload"], ["end_stop", "preload"]]
-    (tmp_path / diagnosis_result.JSON).write_text(json.dumps(document), encoding="utf-8")
     singles = sum(len(each["effects"]) == 1 for each in document["candidates"])
-    told = f"2 of the {singles * (singles - 1) // 2} possible pairs of effects were never tried"
-    assert f"{told} (ageing + preload, end_stop + preload)." in plain(report.sentence(tmp_path))
+    never = f"2 of the {singles * (singles - 1) // 2} possible pairs of effects were never tried"
+    assert f"{never} (ageing + preload, end_stop + preload)." in told(document, data)
 
 
-def test_sentence_names_tests_whose_history_matters(tmp_path):
-    document, _ = fixture_diagnosis.write(tmp_path, "named")
-    complete = plain(report.sentence(tmp_path))
+def test_sentence_names_tests_whose_history_matters():
+    document, data = fixture_diagnosis.build("named")
+    complete = told(document, data)
     for names, words in ((["a"], "in 1 test (a)"), (list("abcd"), "in 4 tests (a, b and c, ...)")):
         document["never_steady"] = names
-        (tmp_path / diagnosis_result.JSON).write_text(json.dumps(document), encoding="utf-8")
-        sentence = plain(report.sentence(tmp_path))
+        sentence = told(document, data)
         assert sentence.startswith(f"{complete.removesuffix('.')}; {words} friction keeps ageing")
 
 
@@ -320,14 +321,13 @@ def test_sentence_names_tests_whose_history_matters(tmp_path):
     ("candidates", "words"),
     [(0, "there is no candidate that these tests could show"), (1, "the only candidate does not explain it")],
 )
-def test_few_candidates_are_described_in_words(candidates, words, tmp_path):
-    document, _ = fixture_diagnosis.write(tmp_path, "none-of-mine")
+def test_few_candidates_are_described_in_words(candidates, words):
+    document, data = fixture_diagnosis.build("none-of-mine")
     document["candidates"] = [each for each in document["candidates"] if len(each["effects"]) == 1][
         :candidates
     ]
     document["detectable"], document["not_testable"] = {}, []
-    (tmp_path / diagnosis_result.JSON).write_text(json.dumps(document), encoding="utf-8")
-    assert words in plain(report.sentence(tmp_path))
+    assert words in told(document, data)
 
 
 @pytest.mark.parametrize(
@@ -378,12 +378,11 @@ def test_few_candidates_are_described_in_words(candidates, words, tmp_path):
         ),
     ],
 )
-def test_adequate_explanations_are_named(verdict, rivals, reason, words, tmp_path):
-    document, _ = fixture_diagnosis.write(tmp_path, verdict)
+def test_adequate_explanations_are_named(verdict, rivals, reason, words):
+    document, data = fixture_diagnosis.build(verdict)
     document["rivals"] = [{"effects": names.split("+"), "gap": 30.0} for names in rivals]
     document["reason"] = reason
-    (tmp_path / diagnosis_result.JSON).write_text(json.dumps(document), encoding="utf-8")
-    assert words in plain(report.sentence(tmp_path))
+    assert words in told(document, data)
 
 
 @pytest.mark.usefixtures("no_figures")
@@ -448,8 +447,8 @@ def test_a_test_of_another_kind_is_told_as_what_to_do(kind, tmp_path):
     assert f'kind = "{test["kind"]}"' in text
 
 
-def test_rivals_that_the_next_test_does_not_distinguish_are_named(tmp_path):
-    document, _ = fixture_diagnosis.write(tmp_path, "tied")
+def test_rivals_that_the_next_test_does_not_distinguish_are_named():
+    document, data = fixture_diagnosis.build("tied")
     document["rivals"].append({"effects": ["preload"], "gap": 5.0})
     test = document["next_test"]
     near = {"separates": ["stribeck", "preload"], "distance": 3.0}
@@ -457,8 +456,7 @@ def test_rivals_that_the_next_test_does_not_distinguish_are_named(tmp_path):
     for distance, words in ((3.0, "stribeck from guide_friction, but not from preload."), (40.0, "them.")):
         pairs = [{key: test[key] for key in ("separates", "distance")}, {**near, "distance": distance}, far]
         document["next_test"] = {**test, "pairs": pairs}
-        (tmp_path / diagnosis_result.JSON).write_text(json.dumps(document), encoding="utf-8")
-        assert plain(report.sentence(tmp_path)).endswith(f"0.1 mm would distinguish {words}")
+        assert told(document, data).endswith(f"0.1 mm would distinguish {words}")
 
 
 @pytest.mark.usefixtures("no_figures")
@@ -479,8 +477,7 @@ def test_equations_of_what_was_added(tmp_path):
 def test_of_a_rotation_torques_and_angles_are_told(tmp_path):
     document, _ = fixture_diagnosis.write(tmp_path, "none-of-mine")
     document["model"] = document["model"] | {"system": "oscillator", "motion": "rotation"}
-    (tmp_path / diagnosis_result.JSON).write_text(json.dumps(rotation.written(document)), encoding="utf-8")
-    page = Page(report.write(tmp_path).read_text(encoding="utf-8"))
+    page = page_of(tmp_path, rotation.written(document))
     assert not re.search(r"(?<![\w.-])(?:forces?|displacement)(?![\w-])|\(N\)|\bmm\b", page.text, re.I)
     assert "The missing torque" in page.text
     assert "differs from the base model's by 0.4 N m" in plain(page.text)
@@ -493,8 +490,7 @@ def test_text_of_the_user_is_not_markup(tmp_path):
     document, _ = fixture_diagnosis.write(tmp_path, "named")
     document["title"] = 'run <script>alert("1")</script> & $title'
     document["misfit"]["tests"][0]["name"] = "<b>00</b>"
-    (tmp_path / diagnosis_result.JSON).write_text(json.dumps(document), encoding="utf-8")
-    page = Page(report.write(tmp_path).read_text(encoding="utf-8"))
+    page = page_of(tmp_path, document)
     assert not page.of("script")
     assert not page.of("b")
     assert 'alert("1")</script> & $title' in page.text
