@@ -6,23 +6,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from reproduce import __main__ as reproduction
-from reproduce import (
-    chandiramani,
-    chandiramani_page,
-    discrimination,
-    observations,
-    scenarios,
-    search,
-)
+from reproduce import chandiramani, chandiramani_page, discrimination, observations, scenarios, search
 from reproduce import figure as picture
-from reproduce.hypotheses import (
-    COULOMB,
-    HYPOTHESES,
-    INDEPENDENT_INPUTS,
-    INTERPRETATIONS,
-    STATIC_DYNAMIC,
-    Law,
-)
+from reproduce.hypotheses import COULOMB, HYPOTHESES, INDEPENDENT_INPUTS, INTERPRETATIONS, STATIC_DYNAMIC, Law
 from reproduce.observations import OBSERVATIONS, OF_TESTS, Recording
 from reproduce.scenarios import TIGHT, Scenario
 from reproduce.search import Budget

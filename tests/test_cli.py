@@ -353,18 +353,7 @@ def test_plot_options_reach_the_figure_in_si(here, drawn_dataset, monkeypatch):
         return friction_laws.draw(target, ds)
 
     monkeypatch.setattr(phase_portrait, "draw", draw)
-    options = (
-        "--beta",
-        0.4,
-        "--amplitude",
-        0.2,
-        "--amplitude",
-        1,
-        "--law",
-        "coulomb",
-        "-o",
-        "x.png",
-    )
+    options = ("--beta", 0.4, "--amplitude", 0.2, "--amplitude", 1, "--law", "coulomb", "-o", "x.png")
     invoke("plot", "phase-portrait", drawn_dataset, *options)
     assert given == {"beta": 0.4, "amplitudes": pytest.approx([2e-4, 1e-3]), "law": "coulomb"}
 

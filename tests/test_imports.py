@@ -26,10 +26,7 @@ NUMERICS = (
     *("excitation.py", "sampled_input.py", "sensor.py", "trigonometry.py"),
     *("friction/", "effects/", "hybrid/", "systems/", "solvers/", "response.py", "simulate.py"),
 )
-ABOVE = (
-    *("sweep", "config", "figures", "measured", "synthesize", "cli", "report"),
-    "diagnosis_result",
-)
+ABOVE = (*("sweep", "config", "figures", "measured", "synthesize", "cli", "report"), "diagnosis_result")
 MECHANICS = ("friction", "effects", "excitation", "sampled_input")
 FORBIDDEN = {
     NUMERICS: ("xarray", "joblib", "netCDF4", *(f"wedgesweep.{name}" for name in ABOVE)),
@@ -62,10 +59,7 @@ FORBIDDEN = {
 ONLY_IN = {
     "click": ("cli/",),
     "matplotlib": ("figures/", "api.py"),  # there for annotations only
-    "joblib": (
-        *("sweep/backend.py", "sweep/verification.py"),
-        *("synthesize/", "cli/"),
-    ),
+    "joblib": (*("sweep/backend.py", "sweep/verification.py"), *("synthesize/", "cli/")),
     "distributed": ("sweep/cluster.py",),
     "wedgesweep.cli": ("cli/", "__main__.py"),
 }

@@ -223,11 +223,7 @@ def test_sentence(verdict):
             {"reason": {"code": "leaves-more", "p": 0.002}},
             "(it leaves more than noise in the tests that show it, p = 0.002)",
         ),
-        (
-            "consistent-with",
-            {"reason": {"code": "unconfirmed"}},
-            "(held-out tests do not confirm it)",
-        ),
+        ("consistent-with", {"reason": {"code": "unconfirmed"}}, "(held-out tests do not confirm it)"),
         (
             "consistent-with",
             {"reason": {"code": "varies", "p": 0.002, "parameter": "stribeck.peak_mm"}},

@@ -212,11 +212,7 @@ def _trial_problems(module: ModuleType, source: _Source) -> Iterator[str]:
     """Hooks that do not compile, or do not leave a system alone at the neutral value."""
     for system in module.EFFECT.systems:
         row, mode = _neutral(system)
-        arguments = {
-            "y": (0.0,) * len(states.kinds(dict.fromkeys(row.dtype.names))),
-            "p": row,
-            "mode": mode,
-        }
+        arguments = {"y": (0.0,) * len(states.kinds(dict.fromkeys(row.dtype.names))), "p": row, "mode": mode}
         for name in HOOKS:
             if hasattr(module, name) and (problem := _tried(module, name, arguments, source)):
                 yield problem

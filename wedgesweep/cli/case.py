@@ -48,11 +48,7 @@ PICTURE = "phase-portrait"
     help="Write STEM.nc and STEM.png; default: a name made from the case, in the current directory.",
 )
 def case(
-    config_path: Path,
-    law: str | None,
-    at: tuple[str, ...],
-    output: Path | None,
-    **sine: float | None,
+    config_path: Path, law: str | None, at: tuple[str, ...], output: Path | None, **sine: float | None
 ) -> None:
     """Solve one case of any law, frequency and amplitude.
 

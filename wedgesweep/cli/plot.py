@@ -93,14 +93,7 @@ POSITIVE = FiniteRange(min=0.0, min_open=True)
 @click.option("--variable", metavar="NAME", help="Variable to draw, as in OUT.")
 @AT
 @click.pass_context
-def plot(
-    ctx: click.Context,
-    kind: str,
-    path: Path,
-    output: Path | None,
-    suffix: str,
-    **picks: Any,
-) -> None:
+def plot(ctx: click.Context, kind: str, path: Path, output: Path | None, suffix: str, **picks: Any) -> None:
     """Draw a figure."""  # the text of --help is HELP
     if None not in (picks["beta"], picks["frequency"]):
         message = "give either --beta or --frequency"

@@ -80,11 +80,7 @@ SHARE = FiniteRange(min=0.0, max=1.0, max_open=True)
 )
 @N_JOBS
 def synthesize(
-    config_path: Path,
-    plan_path: Path,
-    output: Path | None,
-    n_jobs: int | None,
-    **options: Any,
+    config_path: Path, plan_path: Path, output: Path | None, n_jobs: int | None, **options: Any
 ) -> None:
     """Make synthetic measured data of a known system.
 

@@ -77,10 +77,7 @@ def _draw_case(ax: Axes, case: xr.Dataset, omega_n: float) -> None:
 
 
 def draw(
-    target: Target,
-    ds: xr.Dataset,
-    beta: float | None = None,
-    amplitudes: ArrayLike | None = None,
+    target: Target, ds: xr.Dataset, beta: float | None = None, amplitudes: ArrayLike | None = None
 ) -> Panels:
     """Draw the nearest beta (default 0.4 on a grid) and amplitudes (m), or a list of cases."""
     choose = _from_list if "case" in ds.dims else _from_grid

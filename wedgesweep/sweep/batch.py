@@ -15,11 +15,7 @@ WAVEFORMS = ("normal_force_column", "normal_force_bolster", "stuck")
 
 
 def solve_batch(
-    cases: np.ndarray,
-    indices: np.ndarray,
-    settings: Settings,
-    dtype: np.dtype,
-    continuation: bool = False,
+    cases: np.ndarray, indices: np.ndarray, settings: Settings, dtype: np.dtype, continuation: bool = False
 ) -> tuple[np.ndarray, np.ndarray]:
     """Records of some cases, and their states (m, m/s) at the end, shape (n, states).
 

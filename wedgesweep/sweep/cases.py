@@ -76,11 +76,7 @@ def solve_chunk(chunk: Chunk) -> np.ndarray:
 
 
 def solve_cases(
-    cases: np.ndarray,
-    indices: np.ndarray,
-    settings: Settings,
-    case_timeout: float,
-    dtype: np.dtype,
+    cases: np.ndarray, indices: np.ndarray, settings: Settings, case_timeout: float, dtype: np.dtype
 ) -> np.ndarray:
     """Solve some cases; a case that fails gives a status and a message, never an exception.
 
@@ -135,12 +131,7 @@ def _solve_case(case: np.ndarray, settings: Settings, case_timeout: float, recor
     if not np.isfinite(result.numbers["amplitude_ratio"]):
         status, message = "not_finite", "the response is not finite"
         raise CaseError(message, status)
-    values: dict[str, Any] = {
-        **result.numbers,
-        **result.spectra,
-        **result.waveforms,
-        **statistics,
-    }
+    values: dict[str, Any] = {**result.numbers, **result.spectra, **result.waveforms, **statistics}
     for name in values.keys() & set(record.dtype.names or ()):
         record[name] = values[name]
     record["settled_periods"] = settings.window(float(case["input"]["omega"][0])).settle_periods

@@ -42,11 +42,7 @@ def draw(target: Target, result: DiagnosisResult) -> Panels:
         ax.annotate(text, (frequency[rows[-1]], measured[-1]), (8, 0), **place)
         for model in result.models:
             values = data["simulated_peak_to_peak"].sel(model=model).values[rows] * style.MM
-            ax.plot(
-                frequency[rows],
-                values,
-                **{**marks.dot(model), **marks.line(model), "linewidth": 0.8},
-            )
+            ax.plot(frequency[rows], values, **{**marks.dot(model), **marks.line(model), "linewidth": 0.8})
     if data["measured_peak_to_peak"].max() > 20.0 * data["measured_peak_to_peak"].min():
         ax.set_yscale("log")
         style.log_ticks(ax.yaxis)
