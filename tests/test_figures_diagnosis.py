@@ -20,7 +20,7 @@ from wedgesweep.figures.diagnosis import (
     selection,
     spectrogram,
 )
-from wedgesweep.figures.diagnosis.motion import motion
+from wedgesweep.figures.diagnosis.selection import motion
 
 # Figures of steady tests; tests/diagnose draws loops.
 OF_TRANSIENTS = ("decays", "spectrogram")

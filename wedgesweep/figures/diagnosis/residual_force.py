@@ -9,8 +9,8 @@ from scipy.special import chdtrc
 from wedgesweep.diagnosis_result import DiagnosisResult
 from wedgesweep.figures import labels, style
 from wedgesweep.figures.diagnosis import selection
-from wedgesweep.figures.diagnosis.motion import motion
 from wedgesweep.figures.diagnosis.multiples import multiples
+from wedgesweep.figures.diagnosis.selection import motion
 from wedgesweep.figures.panels import Panels, Target
 
 NAME = "leftover-force"

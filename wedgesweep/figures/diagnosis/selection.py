@@ -1,6 +1,7 @@
-"""Which tests a figure of a diagnosis shows, in which order, and how it labels them."""
+"""Which tests a figure of a diagnosis shows, in which order, their labels, and a period of their motion."""
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -59,3 +60,33 @@ def misfit_label(result: DiagnosisResult, test: int) -> str:
     """Misfit per degree of freedom of each model in a test."""
     ratios = [result.data["q"].sel(model=model) / result.data["dof"] for model in result.models]
     return "Q/dof " + " → ".join(formatting.number(ratio.values[test]) for ratio in ratios)
+
+
+class Motion(NamedTuple):
+    """Relative displacement (m) and velocity (m/s) over one period of the input."""
+
+    displacement: np.ndarray
+    velocity: np.ndarray
+
+
+def motion(data: xr.Dataset, waveform: xr.DataArray, test: int) -> Motion:
+    """Return the motion of a test; its velocity is differentiated where there is no such channel."""
+    one = waveform.isel(test=test)
+    displacement = one.sel(channel="displacement").values
+    if "velocity" in data["channel"].values:
+        velocity = one.sel(channel="velocity").values
+        if np.isfinite(velocity).all():
+            return Motion(displacement, velocity)
+    return Motion(displacement, _rate(data, displacement, test))
+
+
+def closed(values: np.ndarray) -> np.ndarray:
+    """Repeat the first sample of a period at its end."""
+    return np.append(values, values[:1])
+
+
+def _rate(data: xr.Dataset, displacement: np.ndarray, test: int) -> np.ndarray:
+    """Differentiate one period of a displacement (m); m/s."""
+    orders = np.fft.rfftfreq(displacement.size, 1.0 / displacement.size)
+    turn = 2j * np.pi * data["frequency"].values[test] * orders
+    return np.fft.irfft(turn * np.fft.rfft(displacement), displacement.size)

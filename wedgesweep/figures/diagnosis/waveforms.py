@@ -8,8 +8,8 @@ from matplotlib.axes import Axes
 from wedgesweep.diagnosis_result import DiagnosisResult
 from wedgesweep.figures import labels, style
 from wedgesweep.figures.diagnosis import marks, selection
-from wedgesweep.figures.diagnosis.motion import closed, motion
 from wedgesweep.figures.diagnosis.multiples import multiples
+from wedgesweep.figures.diagnosis.selection import closed, motion
 from wedgesweep.figures.panels import Panels, Target
 
 NAME = "waveforms"
