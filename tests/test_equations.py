@@ -8,7 +8,7 @@ import pytest
 from tests import latex
 from wedgesweep import equations
 from wedgesweep.effects import EFFECTS, NAMES, REGISTERED
-from wedgesweep.equations import mathml, notation
+from wedgesweep.equations import notation
 from wedgesweep.friction import LAWS
 from wedgesweep.friction.names import LAW_NAMES, OSCILLATOR_LAWS
 from wedgesweep.friction.quantities import FRICTION
@@ -66,27 +66,26 @@ def test_symbols_with_a_dimension_have_a_unit():
 def test_mathml_is_well_formed_and_holds_every_symbol():
     for each in all_stated():
         for line in each.lines:
-            tree = ET.fromstring(mathml.display(line))
+            tree = ET.fromstring(notation.display(line))
             assert tree.tag == "math"
             assert tree.get("alttext") == line
             shown = "".join(tree.itertext())
             for name in notation.names(line):
-                stem = notation.Name(name).stem
-                assert notation.GREEK.get(stem, stem) in shown
-        ET.fromstring(f"<p>{mathml.prose(each.remark)}</p>")
+                assert "".join(ET.fromstring(notation.symbol(name)).itertext()) in shown
+        ET.fromstring(f"<p>{notation.prose(each.remark)}</p>")
 
 
 def test_structure():
-    assert mathml.symbol("mu_s").count("<msub><mi>μ</mi><mi>s</mi></msub>") == 1
-    assert "<mfrac><mi>v</mi><msub><mi>v</mi><mi>t</mi></msub></mfrac>" in mathml.display("v/v_t")
+    assert notation.symbol("mu_s").count("<msub><mi>μ</mi><mi>s</mi></msub>") == 1
+    assert "<mfrac><mi>v</mi><msub><mi>v</mi><mi>t</mi></msub></mfrac>" in notation.display("v/v_t")
     # Round brackets around all that is above, below or raised are not needed there.
-    assert "stretchy" not in mathml.display("(a + b)/(c + d)")
-    assert mathml.display("exp(-(a + b)/c)").count('stretchy="true"') == 2
-    assert "<msubsup><mi>x</mi><mi>f</mi><mo>″</mo></msubsup>" in mathml.display("x_f''")
-    assert "<msqrt>" in mathml.display("sqrt(k m)")
-    assert "damping ratio" in mathml.display("2 damping_ratio")
-    assert "<msub><mi>σ</mi><mi>0</mi></msub>" in mathml.display("sigma_0")
-    assert mathml.prose("a < $v_t$").startswith("a &lt; <math")
+    assert "stretchy" not in notation.display("(a + b)/(c + d)")
+    assert notation.display("exp(-(a + b)/c)").count('stretchy="true"') == 2
+    assert "<msubsup><mi>x</mi><mi>f</mi><mo>″</mo></msubsup>" in notation.display("x_f''")
+    assert "<msqrt>" in notation.display("sqrt(k m)")
+    assert "damping ratio" in notation.display("2 damping_ratio")
+    assert "<msub><mi>σ</mi><mi>0</mi></msub>" in notation.display("sigma_0")
+    assert notation.prose("a < $v_t$").startswith("a &lt; <math")
 
 
 def test_latex():
@@ -101,7 +100,7 @@ def test_latex():
 @pytest.mark.parametrize("text", ["(a", "a)", "a +/ b", "a ^", "sin x", "a ? b", "|a", "a]"])
 def test_what_is_no_equation_is_refused(text):
     with pytest.raises(ValueError, match=r"missing|closed|opens|cannot read"):
-        mathml.display(text)
+        notation.display(text)
 
 
 def test_a_symbol_that_nobody_explains_is_refused():

@@ -20,7 +20,7 @@ from wedgesweep import effects, equations
 from wedgesweep.compiled import function_of
 from wedgesweep.effects import hooks, states
 from wedgesweep.effects.base import EXPERIMENTAL, NUMERICAL, OSCILLATOR, SYSTEMS, Effect
-from wedgesweep.equations import mathml
+from wedgesweep.equations import notation
 from wedgesweep.equations.symbols import Meaning
 from wedgesweep.errors import InputError
 from wedgesweep.hints import hint
@@ -191,7 +191,7 @@ def _equation_problems(module: ModuleType, source: _Source) -> Iterator[str]:
     """Equations that cannot be read, or with a symbol that nothing explains."""
     for line in getattr(module, "EQUATIONS", ()):
         try:
-            mathml.display(line)
+            notation.display(line)
         except ValueError as error:
             yield source.at("EQUATIONS", f"{line!r}: {error}")
             return

@@ -1,4 +1,4 @@
-"""The notation of equations, and the tree that it is read into.
+"""The notation of equations, read into MathML, which browsers set as mathematics.
 
     mu = (mu_s + peak) v/v_t  for |v| <= v_t
 
@@ -8,8 +8,11 @@ raises the one before it. A function takes what is in the brackets behind it. ``
 """
 
 import re
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from html import escape
+from itertools import pairwise
+from xml.etree import ElementTree
+from xml.etree.ElementTree import Element
 
 GREEK = {
     **{"alpha": "α", "beta": "β", "gamma": "γ", "delta": "δ", "zeta": "ζ", "theta": "θ", "mu": "μ"},
@@ -25,95 +28,14 @@ TOKEN = re.compile(
     r"\s*(?:(?P<number>\d+(?:\.\d+)?)|(?P<name>[A-Za-z]\w*)(?P<primes>'*)"
     r"|(?P<sign>->|<=|>=|!=|\+-|[-+=<>.,/^()\[\]|]))"
 )
+SIGNS = {"->": "→", "<=": "≤", ">=": "≥", "!=": "≠", "-": "−", "+-": "±", ".": "⋅"}
+PRIMES = ("", "′", "″")
+# Invisible, but read aloud: a product, and a function of what follows.
+TIMES, APPLY = "\u2062", "\u2061"
 
 
-@dataclass(frozen=True)
-class Number:
-    """A number."""
-
-    text: str
-
-
-@dataclass(frozen=True)
-class Name:
-    """A symbol with its index and its rates; ``stem`` is a letter, a Greek one in English, or words."""
-
-    text: str
-    primes: int = 0
-
-    @property
-    def stem(self) -> str:
-        return self._parts[0]
-
-    @property
-    def index(self) -> str:
-        return self._parts[1]
-
-    @property
-    def _parts(self) -> tuple[str, str]:
-        stem, _, index = self.text.partition("_")
-        return (stem, index) if len(stem) == 1 or stem in GREEK else (self.text.replace("_", " "), "")
-
-
-@dataclass(frozen=True)
-class Operator:
-    """A relation or an operator."""
-
-    text: str
-
-
-@dataclass(frozen=True)
-class Group:
-    """What stands in brackets of a kind."""
-
-    bracket: str
-    content: "Row"
-
-
-@dataclass(frozen=True)
-class Call:
-    """A function of what is in the brackets behind it."""
-
-    function: str
-    argument: "Row"
-
-
-@dataclass(frozen=True)
-class Fraction:
-    """A quotient."""
-
-    above: "Node"
-    below: "Node"
-
-
-@dataclass(frozen=True)
-class Power:
-    """A power."""
-
-    base: "Node"
-    exponent: "Node"
-
-
-@dataclass(frozen=True)
-class Row:
-    """Nodes side by side."""
-
-    nodes: tuple["Node", ...]
-
-
-Node = Number | Name | Operator | Group | Call | Fraction | Power | Row
-
-
-@dataclass(frozen=True)
-class Line:
-    """An equation with the condition under which it holds."""
-
-    equation: Row
-    condition: Row | None
-
-
-def line(text: str) -> Line:
-    """Read a line.
+def display(text: str) -> str:
+    """A line as an equation of its own, with its condition beside it.
 
     Raises
     ------
@@ -121,10 +43,47 @@ def line(text: str) -> Line:
         The text is not in this notation; the message says where.
     """
     equation, _, condition = text.partition(FOR)
-    return Line(row(equation), row(condition) if condition else None)
+    content = [_read(equation)]
+    if condition:
+        content += [_element("mspace", width="2em"), _element("mtext", "for\u00a0"), _read(condition)]
+    return _math(text, *content, display="block")
 
 
-def row(text: str) -> Row:
+def symbol(name: str) -> str:
+    """One symbol."""
+    return _math(name, _name(name))
+
+
+def prose(text: str) -> str:
+    """A sentence with equations between $ signs, as HTML."""
+    parts = text.split("$")
+    return "".join(_math(part, _read(part)) if i % 2 else escape(part) for i, part in enumerate(parts))
+
+
+def names(text: str) -> Iterator[str]:
+    """Names of the symbols of a line, each as often as it occurs."""
+    for match in TOKEN.finditer(text.replace(FOR, " , ")):
+        name = match["name"]
+        if name and name not in (*FUNCTIONS, ROOT):
+            yield name
+
+
+def _math(text: str, *content: Element, **attributes: str) -> str:
+    made = _element("math", *content, **attributes, alttext=text)
+    return ElementTree.tostring(made, encoding="unicode")
+
+
+def _element(tag: str, *content: Element | str, **attributes: str) -> Element:
+    made = Element(tag, attributes)
+    for part in content:
+        if isinstance(part, str):
+            made.text = part
+        else:
+            made.append(part)
+    return made
+
+
+def _read(text: str) -> Element:
     """Read what stands side by side."""
     reader = _Reader(text)
     found = reader.row("")
@@ -134,12 +93,57 @@ def row(text: str) -> Row:
     return found
 
 
-def names(text: str) -> Iterator[str]:
-    """Names of the symbols of a line, each as often as it occurs."""
-    for match in TOKEN.finditer(text.replace(FOR, " , ")):
-        name = match["name"]
-        if name and name not in (*FUNCTIONS, ROOT):
-            yield name
+def _row(nodes: Sequence[Element]) -> Element:
+    """Nodes side by side, with the signs of products between factors."""
+    made = _element("mrow", *nodes[:1])
+    for before, node in pairwise(nodes):
+        if "mo" not in (before.tag, node.tag):
+            made.append(_element("mo", TIMES))
+            if _is_word(before) or _is_word(node):
+                made.append(_element("mspace", width="0.2em"))
+        made.append(node)
+    return made
+
+
+def _is_word(node: Element) -> bool:
+    """Whether a node is written as a word, which a factor beside it must not run into."""
+    if node.tag in ("msqrt", "mfrac"):
+        return node.tag == "msqrt"
+    first = next(iter(node), node)
+    return first.tag == "mi" and len(str(first.text)) > 1
+
+
+def _bracketed(opening: str, content: Element) -> Element:
+    """A row in brackets, which grow with fractions and powers in it."""
+    high = any(node.tag == "mfrac" or _is_power(node) for node in content)
+    before, after = (
+        _element("mo", bracket, form=form, stretchy=str(high).lower())
+        for form, bracket in (("prefix", opening), ("postfix", BRACKETS[opening]))
+    )
+    return _element("mrow", before, content, after)
+
+
+def _is_power(node: Element) -> bool:
+    return node.tag == "msup" and node[0].tag == "mrow"
+
+
+def _bare(node: Element) -> Element:
+    """What is in round brackets, without them: a fraction or an index holds it together."""
+    bracketed = node.tag == "mrow" and node[0].get("form") == "prefix" and node[0].text == "("
+    return node[1] if bracketed else node
+
+
+def _name(text: str, primes: int = 0) -> Element:
+    """A symbol with its index and its rates: a letter, a Greek one in English, or words without index."""
+    stem, _, index = text.partition("_")
+    if len(stem) > 1 and stem not in GREEK:
+        stem, index = text.replace("_", " "), ""
+    letter, rates = _element("mi", GREEK.get(stem, stem)), _element("mo", PRIMES[primes])
+    if index and primes:
+        return _element("msubsup", letter, _element("mi", index), rates)
+    if index:
+        return _element("msub", letter, _element("mi", index))
+    return _element("msup", letter, rates) if primes else letter
 
 
 class _Reader:
@@ -162,33 +166,33 @@ class _Reader:
     def sign(self) -> str:
         return (self.token["sign"] or "") if self.token else ""
 
-    def row(self, closing: str) -> Row:
+    def row(self, closing: str) -> Element:
         """Everything up to a closing bracket, or the end."""
-        found: list[Node] = []
+        found: list[Element] = []
         while self.token and (not self.sign or self.sign not in (closing, ")", "]")):
             if self.sign in OPERATORS:
-                found.append(Operator(self.sign))
+                found.append(_element("mo", SIGNS.get(self.sign, self.sign)))
                 self.advance()
             else:
                 found.append(self.product())
-        return Row(tuple(found))
+        return _row(found)
 
-    def product(self) -> Node:
+    def product(self) -> Element:
         """One thing, or a quotient of two."""
         found = self.power()
         while self.sign == "/":
             self.advance()
-            found = Fraction(bare(found), bare(self.power()))
+            found = _element("mfrac", _bare(found), _bare(self.power()))
         return found
 
-    def power(self) -> Node:
+    def power(self) -> Element:
         base = self.single()
         if self.sign != "^":
             return base
         self.advance()
-        return Power(base, bare(self.single()))
+        return _element("msup", _element("mrow", base), _bare(self.single()))
 
-    def single(self) -> Node:
+    def single(self) -> Element:
         token = self.token
         if token is None or (self.sign and self.sign not in BRACKETS):
             message = f"{self.text!r}: something is missing before {self.sign or 'the end'!r}"
@@ -197,12 +201,14 @@ class _Reader:
             return self.group()
         self.advance()
         if token["number"]:
-            return Number(token["number"])
-        if token["name"] in (*FUNCTIONS, ROOT):
-            return Call(token["name"], self.group().content)
-        return Name(token["name"], len(token["primes"]))
+            return _element("mn", token["number"])
+        if token["name"] == ROOT:
+            return _element("msqrt", self.group()[1])
+        if token["name"] in FUNCTIONS:
+            return _element("mrow", _element("mi", token["name"]), _element("mo", APPLY), self.group())
+        return _name(token["name"], len(token["primes"]))
 
-    def group(self) -> Group:
+    def group(self) -> Element:
         opening = self.sign
         closing = BRACKETS.get(opening)
         if closing is None:
@@ -214,9 +220,4 @@ class _Reader:
             message = f"{self.text!r}: '{opening}' is not closed"
             raise ValueError(message)
         self.advance()
-        return Group(opening, content)
-
-
-def bare(node: Node) -> Node:
-    """What is in round brackets, without them: a fraction or an index holds it together."""
-    return node.content if isinstance(node, Group) and node.bracket == "(" else node
+        return _bracketed(opening, content)

@@ -4,7 +4,7 @@ from types import ModuleType
 
 from wedgesweep import equations
 from wedgesweep.effects import EFFECTS, REGISTERED
-from wedgesweep.equations import mathml
+from wedgesweep.equations import notation
 from wedgesweep.equations.symbols import Meaning
 from wedgesweep.friction import LAWS
 from wedgesweep.friction.quantities import FRICTION
@@ -35,12 +35,12 @@ def _set(module: ModuleType, quantities: tuple[Quantity, ...], system: str) -> M
     stated = equations.of(module, quantities, system)
     if not stated.lines:
         return Markup()
-    lines = [Markup(mathml.display(line)) for line in stated.lines]
+    lines = [Markup(notation.display(line)) for line in stated.lines]
     parts = [
         html.element("div", *lines, class_="equations", tabindex=0, role="region", aria_label="Equations")
     ]
     if stated.remark:
-        parts.append(html.paragraph(Markup(mathml.prose(stated.remark))))
+        parts.append(html.paragraph(Markup(notation.prose(stated.remark))))
     rates = A_RATE if any("'" in line for line in stated.lines) else ""
     parts.append(html.details("What the symbols mean", _symbols(stated.meanings), html.paragraph(rates)))
     return html.join(parts)
@@ -48,7 +48,7 @@ def _set(module: ModuleType, quantities: tuple[Quantity, ...], system: str) -> M
 
 def _symbols(meanings: dict[str, Meaning]) -> Markup:
     rows = [
-        (html.element("dt", Markup(mathml.symbol(name))), html.element("dd", _explained(meaning)))
+        (html.element("dt", Markup(notation.symbol(name))), html.element("dd", _explained(meaning)))
         for name, meaning in meanings.items()
     ]
     return html.element("dl", *(part for row in rows for part in row))
