@@ -166,10 +166,13 @@ def expression_of(arguments: Sequence[str], body: str, **scope: Any) -> Callable
 
         return result(*kinds), code
 
-    return cast(
-        Callable,
-        intrinsic(function_of(["context", *arguments], f"typed({', '.join(arguments)})", typed=typed)),
-    )
+    return with_code(arguments, typed)
+
+
+def with_code(arguments: Sequence[str], typed: Callable) -> Callable:
+    """An intrinsic of numba with these arguments; ``typed`` gets their types: signature and code."""
+    body = f"typed({', '.join(arguments)})"
+    return cast(Callable, intrinsic(function_of(["context", *arguments], body, typed=typed)))
 
 
 # Expressions whose value stands in the code itself.

@@ -5,6 +5,7 @@ written out. A traced function runs once, in Python, on symbols in place of numb
 instruction.
 """
 
+import inspect
 from collections.abc import Callable
 from functools import partialmethod
 from typing import Any, TypeVar, cast
@@ -12,7 +13,8 @@ from typing import Any, TypeVar, cast
 import numba
 from llvmlite import ir
 from numba import types
-from numba.extending import intrinsic
+
+from wedgesweep.compiled import with_code
 
 Function = TypeVar("Function", bound=Callable)
 # A product and its sum may be rounded once.
@@ -29,6 +31,10 @@ class _Symbol:
         value = other.value if isinstance(other, _Symbol) else ir.Constant(ir.DoubleType(), float(other))
         both = (value, self.value) if swapped else (self.value, value)
         return _Symbol(self.builder, getattr(self.builder, name)(*both, flags=FLAGS))
+
+    def __abs__(self) -> "_Symbol":
+        absolute = self.builder.module.declare_intrinsic("llvm.fabs", [ir.DoubleType()])
+        return _Symbol(self.builder, self.builder.call(absolute, [self.value]))
 
     def __bool__(self) -> bool:
         message = "a traced function decides nothing by the value of a number"
@@ -79,18 +85,19 @@ def _packed(context: Any, builder: ir.IRBuilder, kind: Any, found: Any) -> Any:
 
 
 def traced(function: Function) -> Function:
-    """Let compiled code call a Python function of one tuple, with its loops written out.
+    """Let compiled code call a Python function of numbers and tuples, with its loops written out.
 
-    The tuple and the result hold floats, or tuples of floats; the function adds, subtracts, multiplies and
-    divides them, and takes no decision that depends on their values.
+    Tuples hold floats, or tuples of floats. The function adds, subtracts, multiplies and divides them, and
+    takes no decision that depends on their values.
     """
 
-    def call(_: Any, arguments: Any) -> Any:
-        result = numba.typeof(function(_ones(arguments)))
+    def typed(*kinds: Any) -> Any:
+        result = numba.typeof(function(*map(_ones, kinds)))
 
         def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-            return _packed(context, builder, result, function(_symbols(builder, arguments, values[0])))
+            given = (_symbols(builder, *each) for each in zip(signature.args, values, strict=True))
+            return _packed(context, builder, result, function(*given))
 
-        return result(arguments), code
+        return result(*kinds), code
 
-    return cast(Function, intrinsic(call))
+    return cast(Function, with_code(list(inspect.signature(function).parameters), typed))

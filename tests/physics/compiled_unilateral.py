@@ -1,7 +1,5 @@
 """Compiled functions of unilateral joints as Python calls them."""
 
-import numpy as np
-
 from wedgesweep.compiled import compiled
 from wedgesweep.hybrid import interface
 from wedgesweep.systems.suspension import breakaway, filippov
@@ -39,25 +37,6 @@ def well_posed_where_a_jump_holds(t, y, case):
     p = case[0]
     mode = ContactMode(HELD, 1, 0, 1, 1, 0, 0, 0)
     return interface.well_posed(t, y, mode, p), filippov.filippov_forces(t, y, mode, p)[2]
-
-
-@compiled
-def largest_gain(number, case):
-    """Largest gain of energy, over the energy before, in impacts of random states; inf if one has none."""
-    np.random.seed(1)  # noqa: NPY002
-    worst, p = -1.0, case[0]
-    for i in range(number):
-        v = np.random.uniform(-1.0, 1.0, 5)  # noqa: NPY002
-        column, bolster = i % 3 != 1, i % 3 != 0
-        y = (0.0, v[0], 0.0, -abs(v[1]), 0.0 if bolster else 1.0, v[2])
-        if i % 3 == 1:
-            y = (0.0, v[0], 1.0, v[1], 0.0, -abs(v[2]))
-        elif i % 2 == 0:
-            y = (0.0, v[0], 0.0, -abs(v[1]), y[4], 0.0)
-        now = impact.struck(y, column, bolster, 0.45 * (1.0 + v[3]), p)
-        before, after = motion.kinetic_energy(y, p), motion.kinetic_energy(now.y, p)
-        worst = max(worst, after / before - 1.0 if now.unique else np.inf)
-    return worst
 
 
 @compiled

@@ -5,7 +5,7 @@ from math import inf, pi, sin
 import numpy as np
 import pytest
 
-from tests.physics.cases import OMEGA_N, TABLE_1, fast, steady
+from tests.physics.cases import OMEGA_N, fast, steady
 from wedgesweep.solvers import radau
 from wedgesweep.solvers.trajectory import Window
 from wedgesweep.systems.suspension import parameters
@@ -23,42 +23,25 @@ BALANCED = [
 ]
 
 
-@pytest.mark.few(4)
 @pytest.mark.parametrize("lean", [4.0, -4.0])
 @pytest.mark.parametrize("case", BALANCED)
 def test_energy_balance_over_a_steady_period(case, lean):
     law, beta, amplitude = case
     amplitude *= 1.0 if lean > 0 else 2.5  # the other lean holds the bolster much longer
     record = parameters.record(law, amplitude, beta * OMEGA_N, suspension={"column_angle": np.radians(lean)})
-    numbers = steady(record, settle_periods=150, settled=1e-8)
+    numbers = fast(record, 1000).numbers
     assert numbers["dissipated_energy"] > 0.0
+    assert numbers["dissipated_energy"] == pytest.approx(numbers["supplied_energy"], rel=1e-7)
+
+
+def test_energy_balance_by_radau():
+    record = parameters.record("static-dynamic", 1e-3, 0.4 * OMEGA_N)
+    numbers = steady(record, settle_periods=150, settled=1e-8)
     assert numbers["dissipated_energy"] == pytest.approx(numbers["supplied_energy"], rel=1e-5)
 
 
-def test_free_vibration_loses_4_f_over_k_per_cycle():
-    force, start = 0.21, 1e-3
-    record = parameters.record(
-        "coulomb",
-        1e-30,
-        2 * pi,
-        suspension={"column_angle": 0.0},
-        friction={"dynamic": 0.0, "static": 0.0},
-        effects={"guide_friction": {"force": force}},
-    )
-    stiffness = TABLE_1["bolster_spring"] + 2 * TABLE_1["wedge_spring"]
-    half_cycle = 2 * force / stiffness
-    for cycles in (1, 2, 5, 20):
-        end = cycles * 2 * pi / resonance(record[0])
-        record["input"]["omega"] = 2 * pi / end
-        run = radau.solve(record, Window(2 * pi / end, 1, 1, 64), 1e-8, inf, start=(start, 0.0))
-        # After whole cycles the bolster is at rest: the window that follows begins at that extreme.
-        assert run.sums["highest"][0] == pytest.approx(
-            max(start - 2 * cycles * half_cycle, 0.0), rel=1e-6, abs=half_cycle / 2
-        )
-
-
 @pytest.mark.few(2)
-@pytest.mark.parametrize("beta", [0.3, 0.9, 1.4, 3.0])
+@pytest.mark.parametrize("beta", [0.3, 1.4])
 @pytest.mark.parametrize("law", ["coulomb", "exponential"])
 def test_without_friction_the_response_is_the_linear_oscillator(law, beta):
     omega, amplitude = beta * OMEGA_N, 1e-4
@@ -74,17 +57,6 @@ def test_without_friction_the_response_is_the_linear_oscillator(law, beta):
     forced = share * amplitude * omega**2 / (natural**2 - omega**2)
     expected = [forced * (sin(omega * t) - omega / natural * sin(natural * t)) for t in samples.t]
     np.testing.assert_allclose(samples.x, expected, atol=1e-6 * np.ptp(expected))
-
-
-@pytest.mark.few(1)
-@pytest.mark.parametrize("factor", [0.1, 3.0])
-def test_coulomb_friction_scales_with_gravity_and_input_together(factor):
-    def ratio(scale):
-        suspension = {"gravity": 9.80665 * scale, "wedge_preload": 0.5 * scale}
-        record = parameters.record("coulomb", 5e-4 * scale, 0.6 * OMEGA_N, suspension=suspension)
-        return steady(record, settle_periods=10)["amplitude_ratio"]
-
-    assert ratio(factor) == pytest.approx(ratio(1.0), rel=1e-7)
 
 
 def test_the_regularised_laws_approach_each_other_without_decay():
@@ -116,17 +88,6 @@ def test_a_vanishing_threshold_velocity_approaches_set_valued_friction():
     assert errors[1] < 0.2 * errors[0]
 
 
-@pytest.mark.few(1)
-@pytest.mark.parametrize("law", ["coulomb", "static-dynamic", "exponential"])
-def test_a_finer_tolerance_converges(law):
-    record = parameters.record(law, 3e-4, 0.6 * OMEGA_N)
-    tolerances = (1e-3, 1e-4, 1e-5, 1e-6)
-    finest = steady(record, 8, rtol=1e-9)["amplitude_ratio"]
-    errors = [abs(steady(record, 8, rtol=rtol)["amplitude_ratio"] / finest - 1) for rtol in tolerances]
-    assert errors[-1] < 1e-5
-    assert errors[-1] < 0.1 * errors[0]
-
-
 def test_normal_forces_are_unknown_while_stuck_and_known_while_slipping():
     waveforms = fast(parameters.record("coulomb", 1e-3, 0.4 * OMEGA_N), 10).waveforms
     stuck = waveforms["stuck"]
@@ -134,23 +95,6 @@ def test_normal_forces_are_unknown_while_stuck_and_known_while_slipping():
     assert np.isnan(waveforms["normal_force_column"][stuck]).all()
     assert np.isfinite(waveforms["normal_force_column"][~stuck]).all()
     np.testing.assert_array_equal(waveforms["velocity"][stuck], 0.0)
-
-
-def test_harmonics_rebuild_the_displacement_and_its_velocity():
-    record = parameters.record("exponential", 1e-3, 0.4 * OMEGA_N)
-    result = fast(record, 20)
-    orders = np.arange(1, 10)
-    coefficients = result.spectra["displacement_harmonics"] @ (1, 1j)
-    phase = 2 * pi * np.arange(result.waveforms["displacement"].size) / 256
-    rebuilt = (coefficients * np.exp(1j * np.outer(phase, orders))).real.sum(axis=1)
-    displacement = result.waveforms["displacement"]
-    np.testing.assert_allclose(rebuilt, displacement - displacement.mean(), atol=0.02 * np.ptp(displacement))
-    omega = 0.4 * OMEGA_N
-    np.testing.assert_allclose(
-        result.spectra["velocity_harmonics"] @ (1, 1j),
-        1j * orders * omega * coefficients,
-        atol=1e-4 * abs(omega * coefficients[0]),
-    )
 
 
 def test_displacement_turns_from_opposite_to_in_phase_with_the_input():

@@ -11,10 +11,9 @@ from tests.physics.cases import OMEGA_N
 from tests.physics.compiled_mechanics import with_all_mechanics
 from tests.physics.effect_cases import EXTENDING, residual, typical
 from wedgesweep.friction import LAW_NAMES
-from wedgesweep.solvers import event_driven, radau, radau_system
+from wedgesweep.solvers import event_driven, radau
 from wedgesweep.solvers.trajectory import Window
 from wedgesweep.systems.suspension import parameters
-from wedgesweep.systems.suspension.modes import ContactMode
 from wedgesweep.systems.suspension.newton import Coefficients, Loads
 
 LEANS = (-0.07, 0.0, 0.07)
@@ -125,36 +124,6 @@ def test_forces_solve_newtons_equations_with_any_effects_together(law, lean):
 
 
 @pytest.mark.parametrize("law", LAW_NAMES)
-def test_room_for_effects_changes_nothing_without_them(law):
-    generator = np.random.default_rng(4)
-    for _ in range(50):
-        record = record_of(law, generator, [])
-        base, full = parameters.compact(record)[0], with_all_mechanics(record)[0]
-        t, y = generator.uniform(0, 3), random_state(full, generator)
-        mode, unique = mechanics.initial_mode(t, y, full)
-        slope, now = mechanics.rate(t, y, mode, full)
-        expected = mechanics.contact_forces(t, y[:2], mode, base)
-        assert unique
-        assert slope[1] == pytest.approx(expected.acceleration, rel=1e-12)
-        assert now.column == pytest.approx(expected.column, rel=1e-9)
-        assert now.bolster == pytest.approx(expected.bolster, rel=1e-9)
-
-
-@pytest.mark.parametrize("law", LAW_NAMES)
-def test_jacobian_is_the_derivative_of_the_rate(law):
-    for record, t, state in random_states(law, 0.07, 100):
-        case, y = parameters.compact(record), np.array(state)
-        mode, _ = radau_system.initial_mode(t, y, case)
-        exact = radau_system.jacobian(t, y, mode, case)
-        for column, step in enumerate((1e-6, 1e-6 * abs(y[1]))):
-            shift = np.zeros(2)
-            shift[column] = step
-            ahead = radau_system.rate(t, y + shift, mode, case)
-            behind = radau_system.rate(t, y - shift, mode, case)
-            np.testing.assert_allclose(exact[:, column], (ahead - behind) / (2 * step), rtol=1e-5, atol=1e-3)
-
-
-@pytest.mark.parametrize("law", LAW_NAMES)
 def test_laws_are_odd_bounded_and_passive(law):
     record = parameters.record(law, 1e-3, 1.0)
     p, y = parameters.compact(record)[0], (0.0, 0.0)
@@ -171,25 +140,6 @@ def test_laws_jump_from_static_to_dynamic_at_the_threshold():
         threshold = p["friction"]["v_t"]
         assert mechanics.coefficient(threshold, 0, y, p) == pytest.approx(p["friction"]["mu_s"])
         assert mechanics.coefficient(threshold, 1, y, p) == pytest.approx(p["friction"]["mu_d"])
-
-
-def test_a_steep_wedge_with_much_friction_locks():
-    record = parameters.record(
-        "coulomb",
-        1e-3,
-        0.4 * OMEGA_N,
-        suspension={"column_angle": -0.06981317007977318},
-        friction={"dynamic": 0.5},
-    )
-    assert not mechanics.initial_mode(0.0, (0.0, 0.0), parameters.compact(record)[0])[1]
-
-
-def test_guide_friction_of_zero_changes_no_bit():
-    base = parameters.record("static-dynamic", 1e-3, 30.0)
-    off = parameters.record("static-dynamic", 1e-3, 30.0, effects={"guide_friction": {"force": 0.0}})
-    state, mode = (1e-4, 5e-3), ContactMode(1, 0, 1, 1, 1, 0, 0, 0)
-    rates = [mechanics.rate(0.3, state, mode, parameters.compact(each)[0])[0] for each in (base, off)]
-    assert rates[0] == rates[1]
 
 
 @pytest.mark.parametrize("name", ["column_compliance", "fixture_resonance"])
@@ -248,46 +198,33 @@ def test_the_run_begins_where_nothing_moves_without_friction(name):
     assert np.abs(np.concatenate(list(slope.values()))).max() < 1e-8
 
 
-@pytest.mark.few(1)
 @pytest.mark.parametrize("law", ["static-dynamic", "exponential"])
 def test_a_run_begins_in_the_direction_that_the_input_drives_not_that_of_rounding(law):
-    """At phase 0 forces balance; a moment later the side frame falls behind, and z grows."""
-    for scale in np.linspace(0.8, 1.2, 11):
-        effects = {"bolster_stiffness": {"scale": scale}, "directional_friction": {"asymmetry": -0.09}}
-        record = parameters.record(law, 5e-5, 180.0, effects=effects)
-        mode, unique = begun(record)
+    """At phase 0 forces balance; a moment later the side frame falls behind, and z grows.
+
+    On a compliant table the side frame follows late, and at phase 0 not even forces grow.
+    """
+    table = {"fixture_resonance": {"frequency": 363.0, "damping_ratio": 0.055}}
+    scaled = [{"bolster_stiffness": {"scale": scale}} for scale in np.linspace(0.8, 1.2, 11)]
+    for effects, amplitude, omega in (*((each, 5e-5, 180.0) for each in scaled), (table, 2.4e-4, 131.6)):
+        effects["directional_friction"] = {"asymmetry": -0.09 if effects in scaled else 0.03}
+        mode, unique = begun(parameters.record(law, amplitude, omega, effects=effects))
         assert unique
         assert mode.direction == 1
-        window = Window(180.0, 1, 1, 16)
-        assert np.isfinite(radau.solve(record, window, 1e-4, inf).samples.x).all()
 
 
-@pytest.mark.few(1)
-@pytest.mark.parametrize("law", ["static-dynamic", "exponential"])
-def test_a_run_begins_in_the_direction_that_the_input_drives_through_a_compliant_table(law):
-    """The side frame follows the table late, and z the side frame: at phase 0 not even forces grow."""
-    effects = {
-        "directional_friction": {"asymmetry": 0.03},
-        "fixture_resonance": {"frequency": 363.0, "damping_ratio": 0.055},
-    }
-    record = parameters.record(law, 2.4e-4, 131.6, effects=effects)
-    mode, unique = begun(record)
-    assert unique
-    assert mode.direction == 1
-    window = Window(131.6, 1, 1, 64)
-    runs = [solve(record, window, 1e-8, inf).samples.x for solve in (radau.solve, event_driven.solve)]
-    np.testing.assert_allclose(*runs, atol=1e-6 * np.ptp(runs[0]))
+# On a compliant table; and a spurious tone that pulls down for microseconds, until the input outgrows it.
+STARTS = [
+    (2.4e-4, 131.6, 0.03, {"fixture_resonance": {"frequency": 363.0, "damping_ratio": 0.055}}),
+    (7e-5, 207.0, 0.01, {"stray_vibration": {"acceleration": 1.3e-3, "frequency": 8.0, "phase": 2.0}}),
+]
 
 
-@pytest.mark.few(1)
-@pytest.mark.parametrize("phase", [0.5, 2.0, 4.0])
-def test_a_start_to_one_side_that_soon_turns_to_the_other_is_resolved(phase):
-    """A spurious tone pulls down for microseconds, until the input that begins at 0 has outgrown it."""
-    effects = {
-        "directional_friction": {"asymmetry": 0.01},
-        "stray_vibration": {"acceleration": 1.3e-3, "frequency": 8.0, "phase": phase},
-    }
-    record = parameters.record("exponential", 7e-5, 207.0, effects=effects)
-    window = Window(207.0, 1, 1, 64)
+@pytest.mark.acceptance
+@pytest.mark.parametrize(("amplitude", "omega", "asymmetry", "effects"), STARTS)
+def test_both_solvers_begin_in_the_same_direction(amplitude, omega, asymmetry, effects):
+    effects = effects | {"directional_friction": {"asymmetry": asymmetry}}
+    record = parameters.record("exponential", amplitude, omega, effects=effects)
+    window = Window(omega, 1, 1, 64)
     runs = [solve(record, window, 1e-8, inf).samples.x for solve in (radau.solve, event_driven.solve)]
     np.testing.assert_allclose(*runs, atol=1e-6 * np.ptp(runs[0]))

@@ -7,7 +7,17 @@ import pytest
 from scipy.optimize import brentq
 
 from tests.physics.effect_cases import tabulated
-from tests.physics.test_oscillator import AMPLITUDE, OMEGA_N, SOLVERS, K, M, coulomb, oscillator, steady
+from tests.physics.test_oscillator import (
+    AMPLITUDE,
+    EACH_SOLVER,
+    OMEGA_N,
+    SOLVERS,
+    K,
+    M,
+    coulomb,
+    oscillator,
+    steady,
+)
 from wedgesweep.effects import EFFECTS
 from wedgesweep.solvers import event_driven
 from wedgesweep.solvers.trajectory import Window
@@ -58,21 +68,30 @@ def test_words_name_parts_of_the_oscillator(name):
     assert not any(part in words for part in ("bolster", "wedge", "column", "side frame", "{"))
 
 
-@pytest.mark.few(5)
-@pytest.mark.parametrize("law", ["coulomb", "exponential"])
+ONE, BOTH = ("event-driven",), (*SOLVERS,)
+
+
+@pytest.mark.parametrize(
+    ("law", "solvers"),
+    [
+        ("coulomb", ONE),
+        ("exponential", ONE),
+        pytest.param("coulomb", BOTH, marks=pytest.mark.acceptance),
+    ],
+)
 @pytest.mark.parametrize("name", MECHANICAL)
-def test_energy_balances_and_solvers_agree(name, law):
+def test_energy_balances_and_solvers_agree(name, law, solvers):
     contact = "ground" if name in GROUNDED else "base"
     # Time at rest strengthens friction only where there is some.
     level = 0.9 if name == "ageing" else 0.5
     effect = case(law, contact, level, **{name: STRENGTHS[name]})
-    found = [steady(effect, solver, rtol=1e-8, settle=30).numbers for solver in SOLVERS]
+    found = [steady(effect, solver, rtol=1e-8, settle=30).numbers for solver in solvers]
     for each in found:
         assert each["supplied_energy"] == pytest.approx(each["dissipated_energy"], rel=2e-5)
     # Bristles have no event where the slip velocity passes the bound of sticking: its share is a quadrature.
     numbers = ["amplitude_ratio", "dissipated_energy", *["stick_fraction"] * (name != "presliding")]
     for number in numbers:
-        assert found[0][number] == pytest.approx(found[1][number], rel=1e-5, abs=1e-6), number
+        assert found[0][number] == pytest.approx(found[-1][number], rel=1e-5, abs=1e-6), number
     neutral = {each.name: each.neutral * each.factor for each in EFFECTS[name].quantities}
     without = steady(case(law, contact, level, **{name: neutral}), rtol=1e-8, settle=30).numbers
     # Friction that differs by direction moves the mean only.
@@ -80,7 +99,7 @@ def test_energy_balances_and_solvers_agree(name, law):
     assert abs(found[0][changed] - without[changed]) > 1e-3 * abs(found[0][changed])
 
 
-@pytest.mark.few(1)
+@pytest.mark.acceptance
 @pytest.mark.parametrize("level", [0.5, 1.5])
 def test_bent_bristles_hold_a_mass_between_the_frictions_of_both_directions(level):
     """At zero slip friction jumps by the asymmetry times what the bristles hold."""
@@ -132,7 +151,7 @@ def free(solver, x, **effects):
     return SOLVERS[solver].solve(record, window, 1e-11, inf, start=(x, 0.0)).samples
 
 
-@pytest.mark.parametrize("solver", SOLVERS)
+@EACH_SOLVER
 @pytest.mark.parametrize("asymmetry", [0.6, -0.6])
 def test_damping_by_direction_decays_at_the_rate_of_each_half_swing(solver, asymmetry):
     mean = 8.0
@@ -148,7 +167,7 @@ def test_damping_by_direction_decays_at_the_rate_of_each_half_swing(solver, asym
     assert [x.min(), x[x.size // 4 :].max()] == pytest.approx(turns, rel=1e-6)
 
 
-@pytest.mark.parametrize("solver", SOLVERS)
+@EACH_SOLVER
 def test_drag_has_the_turning_points_of_its_first_integral(solver):
     """From x = -A to B at positive speed: (1 - g B) exp(g B) = (1 + g A) exp(-g A), g = 2 c/m."""
     coefficient, start = 300.0, 2e-3
@@ -160,7 +179,7 @@ def test_drag_has_the_turning_points_of_its_first_integral(solver):
     assert x.max() == pytest.approx(turn, rel=1e-6)
 
 
-@pytest.mark.parametrize("solver", SOLVERS)
+@EACH_SOLVER
 def test_play_lengthens_the_period_by_the_time_of_its_crossing(solver):
     """Force-free for 2 clearances, twice a period, at the speed of the linear motion there."""
     clearance, start = 4e-4, 2e-3

@@ -8,14 +8,11 @@ import pytest
 from tests.physics.cases import OMEGA_N
 from wedgesweep import friction
 from wedgesweep.compiled import compiled
-from wedgesweep.hybrid import step
 from wedgesweep.hybrid.polynomials import largest_change, polynomial, slope
 from wedgesweep.systems.suspension import events as events_of
 from wedgesweep.systems.suspension import (
     newton,
     parameters,
-    power_series,
-    rational,
     regularised_slip,
     series_events,
 )
@@ -70,36 +67,13 @@ def mode_while_closed():
 
 
 @compiled
-def rational_acceleration(cases):
-    return rational.rational_acceleration(mode_while_closed(), cases[0])
-
-
-def value(bilinear, column_mu, bolster_mu):
-    mixed = bilinear.both * column_mu * bolster_mu
-    return bilinear.constant + bilinear.column * column_mu + bilinear.bolster * bolster_mu + mixed
-
-
-@pytest.mark.parametrize("friction", [{}, {"static": 0.0, "dynamic": 0.0}])
-def test_the_acceleration_is_a_rational_function_of_both_coefficients(friction):
-    generator = np.random.default_rng(1)
-    for angle in (-8.0, 0.0, 2.5, 6.0):
-        cases = case(column_angle_deg=angle, friction=friction, wedge_preload=2.0)
-        forces = rational_acceleration(cases)
-        for _ in range(20):
-            x, u2 = generator.uniform(-2e-3, 2e-3), generator.uniform(-20.0, 20.0)
-            mu = generator.uniform(-1.0, 1.0, 2) * cases["friction"]["mu_s"][0]
-            over = value(forces.at_rest, *mu) + value(forces.by_x, *mu) * x + value(forces.by_u, *mu) * u2
-            exact = newtons_forces(x, u2, *mu, cases).acceleration
-            assert over / value(forces.determinant, *mu) == pytest.approx(exact, rel=1e-11)
+def equations_of(cases):
+    return regularised_slip.equations_of(mode_while_closed(), cases[0])
 
 
 def test_up_to_some_displacement_both_faces_surely_carry_load():
     cases, generator = case(), np.random.default_rng(2)
-    limits = [
-        rational_acceleration(cases).loaded,
-        AMPLITUDE * OMEGA**2,
-        *(2 * [cases["friction"]["mu_s"][0]]),
-    ]
+    limits = [equations_of(cases).loaded, AMPLITUDE * OMEGA**2, *(2 * [cases["friction"]["mu_s"][0]])]
     assert 0.0 < limits[0] < inf
 
     def least_force(share):
@@ -115,14 +89,7 @@ def test_up_to_some_displacement_both_faces_surely_carry_load():
 def expanded(t, y, mode, cases):
     """Series of a motion."""
     p = cases[0]
-    return regularised_slip._expanded(t, y, mode, rational.rational_acceleration(mode, p), p)
-
-
-@compiled
-def motion_of(t, y, mode, cases):
-    """What a series begins with."""
-    p = cases[0]
-    return regularised_slip._motion(t, y, mode, rational.rational_acceleration(mode, p), p)
+    return regularised_slip._expanded(t, y, mode, regularised_slip.equations_of(mode, p), p)
 
 
 @compiled
@@ -153,14 +120,6 @@ def test_a_series_solves_newtons_equations(law, branches, velocity):
     assert left[0] < 1e-4 * abs(series.velocity[1])
     rounding = 1e-12 * OMEGA**2 * abs(y[0])
     assert left[1] < left[0] / (0.6 * 2.0**ORDER) + rounding
-
-
-def test_beside_numba_the_same_code_runs_on_plain_numbers():
-    cases = case("exponential")
-    mode, y = mode_of((1, 0)), start(cases, 3.0)
-    motion = motion_of(0.01, y, mode, cases)
-    there, here = expanded(0.01, y, mode, cases), power_series.expanded(motion, powers=True)
-    assert np.concatenate(there) == pytest.approx(np.concatenate(here), rel=1e-12)
 
 
 @compiled
@@ -206,19 +165,3 @@ def _exponent(cases):
 def exponent_of(cases, law):
     cases["friction"]["law"] = friction.code(law)
     return _exponent(cases)
-
-
-@compiled
-def states_in_a_step(share, h, coefficients):
-    """State, and its derivative by the share of a step."""
-    made = step.SeriesStep(0.0, h, (coefficients[0][0], coefficients[1][0]), coefficients)
-    return step.dense_output(share, made), step.dense_slope(share, made)
-
-
-def test_states_in_a_step_are_those_of_its_series():
-    h, coefficients = 0.3, ((1.0, -2.0, 0.5), (3.0, 4.0, -1.0))
-    exact = [np.polynomial.Polynomial(each) for each in coefficients]
-    for share in (0.0, 0.4, 1.0):
-        state, rate = states_in_a_step(share, h, coefficients)
-        assert state == pytest.approx([each(share * h) for each in exact], rel=1e-14)
-        assert rate == pytest.approx([h * each.deriv()(share * h) for each in exact], rel=1e-14)

@@ -28,7 +28,7 @@ def test_steady_response(row):
     assert numbers["stick_fraction"] == pytest.approx(row["stick_fraction"], abs=3e-4)
 
 
-@pytest.mark.few(2)
+@pytest.mark.few(1)
 @EACH_ROW
 def test_steady_response_by_radau(row):
     numbers = steady(of_row(row), settle_periods=row["settle_periods"])
@@ -72,11 +72,12 @@ def test_laws_part_near_breakaway(law, beta, amplitude_mm, ratio):
     assert fast(record).numbers["amplitude_ratio"] == pytest.approx(ratio, abs=1e-3)
 
 
+@pytest.mark.parametrize("guide", [0.0, 0.3])
 @pytest.mark.parametrize("excess", [-1e-6, 1e-3])
-def test_motion_begins_at_the_breakaway_acceleration(excess):
-    omega = 1.5 * OMEGA_N
-    limit = breakaway_accelerations(parameters.record("coulomb", 1e-3, omega))[0][0]
-    record = parameters.record("coulomb", (1.0 + excess) * limit / omega**2, omega)
+def test_motion_begins_at_the_breakaway_acceleration(excess, guide):
+    omega, effects = 1.5 * OMEGA_N, {"guide_friction": {"force": guide}}
+    limit = breakaway_accelerations(parameters.record("coulomb", 1e-3, omega, effects=effects))[0][0]
+    record = parameters.record("coulomb", (1.0 + excess) * limit / omega**2, omega, effects=effects)
     numbers = steady(record, settle_periods=3)
     assert (numbers["stick_fraction"] < 1.0) == (excess > 0)
     assert (numbers["amplitude_ratio"] > 0.0) == (excess > 0)

@@ -9,7 +9,7 @@ from wedgesweep import config, rotation
 
 # A pendulum of 20 g m^2 and 0.4 N m/rad: 1.405 s of small swings.
 INERTIA, STIFFNESS = 0.02, 0.4
-METHODS = ("event-driven", "radau")
+METHODS = ("event-driven", pytest.param("radau", marks=pytest.mark.acceptance))
 
 
 def released(start_deg: float, method: str, **more: float | str) -> dict:

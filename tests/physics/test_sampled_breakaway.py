@@ -9,7 +9,7 @@ from wedgesweep.config import from_document
 from wedgesweep.sampled_input import bend_leaves, from_samples, set_sampled
 from wedgesweep.solvers import periodic
 from wedgesweep.systems import compact, state_count
-from wedgesweep.systems.suspension.rest import breakaway_inputs
+from wedgesweep.systems.suspension.rest import breakaway_inputs, rest_interval
 
 CONFIG = from_document(
     {"suspension": {}, "sweep": {"friction_law": "coulomb", "beta": 1.0, "amplitude_mm": 1.0}}
@@ -56,21 +56,22 @@ def test_a_range_without_zero_is_left_before_the_samples_begin_and_after_they_en
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
-@pytest.mark.parametrize("effects", [{}, {"viscous_damping": {"coefficient": 5.0}}])
-def test_a_bolster_breaks_away_when_a_growing_acceleration_reaches_that_of_breakaway(sign, effects):
+@pytest.mark.parametrize("locked_in", [0.0, 0.3])
+def test_a_bolster_breaks_away_when_a_growing_acceleration_reaches_that_of_breakaway(sign, locked_in):
     growth, span, samples = 1.0, 1.0, 200_000
     time = np.arange(2001) * 5e-4
     begin = 0.1
     given = from_samples(sign * (begin + growth * time), 5e-4, "acceleration")
-    row = _record(given, span, effects)
-    expected = (_breakaway(row, sign) - begin) / growth
+    row = _record(given, span, {"jamming": {"locked_in": locked_in}} if locked_in else {})
+    expected = (_breakaway(row, sign, locked_in) - begin) / growth
     assert 0.1 < expected < 0.9
     run = periodic.sampled(row, np.zeros((1, state_count())), 0, 1, samples, 1e-10)
     moves = np.flatnonzero(run.velocity[0] != 0.0)[0] / samples
     assert moves == pytest.approx(expected, abs=2.0 / samples)
 
 
-def _breakaway(row, side):
+def _breakaway(row, side, locked_in):
     """Size of the base acceleration (m/s^2) to one side at which the bolster leaves its equilibrium."""
-    up, down = breakaway_inputs(row, row["friction"]["mu_d"])
-    return abs(float((down if side > 0 else up)[0]))
+    mu = row["friction"]["mu_d"]
+    least, most = (ends[side > 0][0] for ends in (breakaway_inputs(row, mu), rest_interval(row, mu)))
+    return abs(float(least + locked_in * (most - least)))

@@ -51,7 +51,7 @@ def test_motion_is_the_same_to_the_last_bits_where_factors_round_nothing(name, l
     assert all(in_proportion(size, law, {name: mild(name)}, 1e-13))
 
 
-@pytest.mark.few(2)
+@pytest.mark.acceptance
 @pytest.mark.parametrize("size", POWERS_OF_TWO.values(), ids=POWERS_OF_TWO)
 @pytest.mark.parametrize(
     ("name", "law"),

@@ -26,7 +26,7 @@ def by_time(t, cases):
     return implicit._derivatives(t, y, interface.rate(t, y, mode, p)[0], mode, p)[1]
 
 
-@pytest.mark.few(1)
+@pytest.mark.acceptance
 @pytest.mark.parametrize("seconds", [4.0, 2000.0])
 def test_the_rate_changes_with_the_third_derivative_of_the_base(seconds):
     samples = AMPLITUDE * np.sin(OMEGA * np.arange(0.0, seconds, STEP))

@@ -18,7 +18,11 @@ from wedgesweep.systems import compact, example, opens, while_closed
 from wedgesweep.systems.suspension import parameters
 
 RTOL, PERIODS = 1e-9, 3
-EFFECTS = {"viscous_damping": {"coefficient": 8.0}, "stribeck": {"velocity": 5e-3, "peak": 0.05}}
+EFFECTS = {
+    "viscous_damping": {"coefficient": 8.0},
+    "stribeck": {"velocity": 5e-3, "peak": 0.05},
+    "fixture_resonance": {"frequency": 40.0, "damping_ratio": 0.05},
+}
 STOP = {"end_stop": {"clearance": 2e-4, "stiffness": 2e4}, "input_distortion": {"second": 0.1}}
 
 
@@ -57,6 +61,7 @@ def run(case, turns=True, start=(), periods=PERIODS, rtol=RTOL):
     return run_periods(cases, 0, periods, y, True, room), y, room
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("law", LAW_NAMES)
 def test_contacts_about_to_open_are_never_followed_as_bilateral(law):
     """Of random states, those that bilateral joints would follow have one mode, and it is theirs."""
@@ -119,12 +124,21 @@ def assert_same(room, its, y, start):
         assert room.sums[name] == its.sums[name], name
 
 
+KINDS = {"plain": {}, "effects": EFFECTS, "stop": STOP, "series": {}}
+
+
 @pytest.mark.parametrize("law", LAW_NAMES)
-def test_random_cases_are_bilateral_until_a_contact_opens_and_themselves_after_that(law):
+@pytest.mark.parametrize(
+    "kind", ["plain", *(pytest.param(kind, marks=pytest.mark.acceptance) for kind in list(KINDS)[1:])]
+)
+def test_random_cases_are_bilateral_until_a_contact_opens_and_themselves_after_that(law, kind):
     """Where nothing opens bit for bit; elsewhere what the system for all motions does without turns."""
     generator, closed, opened = np.random.default_rng(3), 0, 0
-    for _ in range(150):
-        bilateral, unilateral = random_case(generator, law)
+    for _ in range(150 if kind == "plain" else 24):
+        bilateral, unilateral = random_case(generator, law, 4e-3 if kind == "plain" else 2e-3, KINDS[kind])
+        if kind == "series":
+            for case in (bilateral, unilateral):
+                excitation.set_series(case, np.array([-1j, 0.2 + 0.1j]))
         outcome, y, room = run(unilateral)
         alone_outcome, _, other = run(unilateral, turns=False)
         assert outcome == alone_outcome == 0
@@ -132,7 +146,7 @@ def test_random_cases_are_bilateral_until_a_contact_opens_and_themselves_after_t
             closed += 1
             _, held, its = run(bilateral)
             assert its.sums["lifted_time"][0] == 0.0
-            assert_same(room, its, y, held)
+            assert_same(room, its, y, held[:2])
             continue
         opened += 1
         size = [np.abs(each).max() for each in (other.x, other.velocity)]
@@ -140,7 +154,7 @@ def test_random_cases_are_bilateral_until_a_contact_opens_and_themselves_after_t
         assert room.velocity == pytest.approx(other.velocity, abs=1e-5 * size[1])
         assert open_time(room) == pytest.approx(open_time(other), abs=1e-6 * room.sums["time"][0])
         assert room.sums["impacts"] == other.sums["impacts"]
-    assert min(closed, opened) > 30
+    assert min(closed, opened) > (30 if kind == "plain" else 3)
 
 
 @pytest.mark.few(1)
@@ -164,7 +178,7 @@ def test_cases_that_could_lock_are_followed_alike_and_lock_alike(law):
     assert min(followed, opened) > 50
 
 
-@pytest.mark.parametrize("rtol", [1e-5, 1e-6, 1e-7, 1e-9])
+@pytest.mark.parametrize("rtol", [1e-5, 1e-9])
 def test_a_pole_of_the_normal_forces_is_not_taken_for_lift_off(rtol):
     """Where the determinant of two faces that slip passes zero forces change their sign through infinity."""
     friction = {"dynamic": 0.46727362165893815, "static": 0.5373646649077789}
@@ -175,31 +189,7 @@ def test_a_pole_of_the_normal_forces_is_not_taken_for_lift_off(rtol):
     assert raised.value.status == "locked"
 
 
-@pytest.mark.parametrize("law", LAW_NAMES)
-@pytest.mark.parametrize("kind", ["effects", "stop", "series"])
-def test_effects_and_recorded_inputs_are_followed_alike(law, kind):
-    generator, closed, opened = np.random.default_rng(4), 0, 0
-    effects = {"effects": EFFECTS, "stop": STOP, "series": {}}[kind]
-    for _ in range(24):
-        bilateral, unilateral = random_case(generator, law, 2e-3, effects)
-        if kind == "series":
-            for case in (bilateral, unilateral):
-                excitation.set_series(case, np.array([-1j, 0.2 + 0.1j]))
-        outcome, y, room = run(unilateral)
-        assert outcome == 0
-        if open_time(room) == 0.0:
-            closed += 1
-            _, held, its = run(bilateral)
-            assert_same(room, its, y, held[:2])
-            continue
-        opened += 1
-        _, _, other = run(unilateral, turns=False)
-        assert room.x == pytest.approx(other.x, abs=1e-6 * np.abs(other.x).max())
-        assert room.sums["impacts"] == other.sums["impacts"]
-    assert min(closed, opened) > 3
-
-
-@pytest.mark.few(1)
+@pytest.mark.acceptance
 @pytest.mark.parametrize("law", LAW_NAMES)
 def test_radau_takes_turns_as_well(law):
     window = Window(1.472 * OMEGA_N, 1, 2, 32)

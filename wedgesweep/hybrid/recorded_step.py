@@ -13,50 +13,34 @@ from wedgesweep.hybrid.step import dense_output, dense_slope
 PLACE_OF_EXTREME = 1e-9
 
 
-class _Velocity(NamedTuple):
-    """Observed velocity on a step, times a sign."""
+class _Motion(NamedTuple):
+    """Observed velocity on a step, or its derivative by the share of the step (``order`` 1), times a sign."""
 
+    order: int
     sign: float
     step: Any
     p: Any
 
 
-class _Acceleration(NamedTuple):
-    """Derivative of the observed velocity by the share of a step, times a sign."""
-
-    sign: float
-    step: Any
-    p: Any
-
-
-@searched(_Velocity)
+@searched(_Motion)
 @inner
-def _velocity(share, context):
-    step, p = context.step, context.p
-    velocity = observed(dense_output(share, step), p)[1]
-    return context.sign * velocity, context.sign * observed(dense_slope(share, step), p)[1]
-
-
-@searched(_Acceleration)
-@inner
-def _acceleration(share, context):
-    return context.sign * observed(dense_slope(share, context.step), context.p)[1], nan
+def _signed(share, motion):
+    slope = motion.sign * observed(dense_slope(share, motion.step), motion.p)[1]
+    if motion.order == 1:
+        return slope, nan
+    return motion.sign * observed(dense_output(share, motion.step), motion.p)[1], slope
 
 
 @inner
 def _record_extremes(share, step, mode, recorder, p):
     """Record the extremes of displacement and velocity in a step up to a share of it."""
-    first, last = _velocity(0.0, _Velocity(1.0, step, p))[0], _velocity(share, _Velocity(1.0, step, p))[0]
-    if first * last < 0.0:
-        turning = _Velocity(1.0 if first > 0.0 else -1.0, step, p)
-        there = zero(turning, Bracket(0.0, abs(first), share, -abs(last)), PLACE_OF_EXTREME)
-        record_node(step.t + there * step.h, dense_output(there, step), 0.0, mode, recorder, p)
-    upward = _Acceleration(1.0, step, p)
-    first, last = _acceleration(0.0, upward)[0], _acceleration(share, upward)[0]
-    if first * last < 0.0:
-        peak = _Acceleration(1.0 if first > 0.0 else -1.0, step, p)
-        there = zero(peak, Bracket(0.0, abs(first), share, -abs(last)), PLACE_OF_EXTREME)
-        record_node(step.t + there * step.h, dense_output(there, step), 0.0, mode, recorder, p)
+    for order in range(2):
+        rate = _Motion(order, 1.0, step, p)
+        first, last = _signed(0.0, rate)[0], _signed(share, rate)[0]
+        if first * last < 0.0:
+            falling = _Motion(order, 1.0 if first > 0.0 else -1.0, step, p)
+            there = zero(falling, Bracket(0.0, abs(first), share, -abs(last)), PLACE_OF_EXTREME)
+            record_node(step.t + there * step.h, dense_output(there, step), 0.0, mode, recorder, p)
 
 
 @inner

@@ -3,49 +3,35 @@
 ``vector`` and ``store`` convert from and to arrays.
 """
 
-from collections.abc import Callable
-from functools import cache
 from typing import Any
 
 from numba.core import types
 from numba.cpython.unsafe.tuple import tuple_setitem
 
-from wedgesweep.compiled import by_type, contracted, contracted_of, inlined
+from wedgesweep.compiled import by_type, contracted_of, inlined
+from wedgesweep.traced import traced
 
 _set_item: Any = tuple_setitem
 
 
-@cache
-def _sum_of_products(arguments: str, size: int, count: int) -> Callable:
-    """A function that adds ``count`` vectors of ``size`` numbers, to ``start`` if that is an argument."""
-    factors = "\n".join(f"    w{j} = scale * weights[{j}]" for j in range(count))
-    parts = []
-    for i in range(size):
-        first = [f"start[{i}]"] if "start" in arguments else []
-        parts.append(" + ".join([*first, *(f"w{j} * vectors[{j}][{i}]" for j in range(count))]))
-    scope: dict[str, Any] = {}
-    exec(f"def sum({arguments}):\n{factors}\n    return ({', '.join(parts)},)", scope)
-    return contracted(scope["sum"])
+def _sum_of_products(i, factors, vectors):
+    """Element i of the sum of vectors, each times a factor."""
+    terms = [factor * each[i] for factor, each in zip(factors, vectors, strict=True)]
+    return sum(terms[1:], terms[0])
 
 
+@traced
 def weighted(start, scale, weights, vectors):
     """Start + scale (w_1 v_1 + w_2 v_2 + ...), each product with the scale taken first."""
-    raise NotImplementedError
+    factors = [scale * weight for weight in weights]
+    return tuple(each + _sum_of_products(i, factors, vectors) for i, each in enumerate(start))
 
 
-@by_type(weighted)
-def _weighted(start, scale, weights, vectors):
-    return _sum_of_products("start, scale, weights, vectors", len(start), len(vectors))
-
-
+@traced
 def combination(scale, weights, vectors):
     """The weighted sum alone."""
-    raise NotImplementedError
-
-
-@by_type(combination)
-def _combination(scale, weights, vectors):
-    return _sum_of_products("scale, weights, vectors", len(vectors[0]), len(vectors))
+    factors = [scale * weight for weight in weights]
+    return tuple(_sum_of_products(i, factors, vectors) for i in range(len(vectors[0])))
 
 
 def vector(array, like):

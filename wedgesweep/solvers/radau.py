@@ -102,7 +102,7 @@ def solve(
 def _taking_turns(case: np.ndarray) -> list[np.ndarray]:
     """A compact record, and the record for closed contacts if it has one and no state of it can lock."""
     closed = while_closed(case)
-    return [case] if closed is None or not system.never_locks(case) else [case, closed]
+    return [case] if closed is None or not system.description(case)[2] else [case, closed]
 
 
 class _Run:
@@ -113,7 +113,7 @@ class _Run:
         self.cases = _taking_turns(compact(parameters))
         self.deadline = perf_counter() + time_limit
         self.time_limit = time_limit
-        self.all_scales, fastest = system.scales(self.cases[0])
+        self.all_scales, fastest, _ = system.description(self.cases[0])
         self.period = 2.0 * pi / fastest
         self.statistics: Counter[str] = Counter(rate_evaluations=0, steps=0, switches=0)
         self.sums = accumulators.empty()
@@ -136,7 +136,7 @@ class _Run:
 
     def _use(self, case: np.ndarray) -> None:
         """Follow the motion from here on with the system of another record."""
-        self.case, self.scales = case, system.scales(case)[0]
+        self.case, self.scales = case, system.description(case)[0]
 
     def _full(self, y: np.ndarray) -> np.ndarray:
         """The state in the larger of two systems: the gaps of closed contacts are 0."""

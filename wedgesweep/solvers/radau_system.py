@@ -21,23 +21,17 @@ ADD, SAMPLE, LOCKED, MISSED = range(4)
 
 
 @compiled
-def scales(case):
-    """Natural sizes of the states, shape (n,), and the highest angular frequency of the input (rad/s)."""
+def description(case):
+    """Natural sizes of the states (n,), highest angular frequency of the input (rad/s), ``never_locks``."""
     size = np.empty(len(interface.scales(case[0])))
     store(interface.scales(case[0]), size)
-    return size, interface.fastest(case[0])
+    return size, interface.fastest(case[0]), interface.never_locks(case[0])
 
 
 @compiled
 def initial_mode(t, y, case):
     """Mode at the start of a run, and whether it is well-posed."""
     return interface.initial_mode(t, vector(y, interface.scales(case[0])), case[0])
-
-
-@compiled
-def never_locks(case):
-    """Whether it is proved that every state is well-posed."""
-    return interface.never_locks(case[0])
 
 
 @compiled

@@ -6,7 +6,13 @@ import numpy as np
 
 from wedgesweep.compiled import compiled, inner
 from wedgesweep.effects import column_compliance, cubic_stiffness
-from wedgesweep.systems.suspension.newton import NO_FRICTION, Coefficients, Loads, reactions
+from wedgesweep.systems.suspension.newton import (
+    NO_FRICTION,
+    Coefficients,
+    Loads,
+    loads_per_displacement,
+    reactions,
+)
 
 ITERATIONS = 100
 # Newton's method ends at steps of this share of the deflection of the bolster's spring by weight and preload.
@@ -21,14 +27,14 @@ def determinant(column_mu, bolster_mu, p):
 
 
 @inner
-def _response(wedge, vertical, lateral, mu, p):
+def _response(wedge, vertical, lateral, p):
     """Accelerations z'' and Q'' under forces (N) on wedge and bolster (up) and column (outward).
 
     In equilibrium the side frame does not accelerate either, so that a compliant fixture changes nothing.
     """
     g = p.geometry
     load = Loads(wedge * g.cos_column, wedge * g.sin_column, vertical, lateral, 0.0, 0.0)
-    now = reactions(load, mu, p)[0]
+    now = reactions(load, NO_FRICTION, p)[0]
     return now.acceleration, now.column_acceleration
 
 
@@ -48,13 +54,13 @@ def equilibrium(p):
         wedge = s.wedge_preload - s.wedge_spring * (lift * z + p.geometry.lift_ratio * deflection)
         vertical = -(s.bolster_spring + cubic * z * z) * z - s.bolster_mass * s.gravity
         lateral = -stiffness * deflection
-        rz, rq = _response(wedge - s.wedge_mass * s.gravity, vertical, lateral, NO_FRICTION, p)
+        rz, rq = _response(wedge - s.wedge_mass * s.gravity, vertical, lateral, p)
         tangent = -s.bolster_spring - 3.0 * cubic * z * z
-        zz, qz = _response(-s.wedge_spring * lift, tangent, 0.0, NO_FRICTION, p)
+        zz, qz = _response(-s.wedge_spring * lift, tangent, 0.0, p)
         if not yields:
             dz, dq, stable = -rz / zz, 0.0, zz < 0.0
         else:
-            zq, qq = _response(-s.wedge_spring * p.geometry.lift_ratio, 0.0, -stiffness, NO_FRICTION, p)
+            zq, qq = _response(-s.wedge_spring * p.geometry.lift_ratio, 0.0, -stiffness, p)
             jacobian = zz * qq - zq * qz
             dz, dq = -(rz * qq - zq * rq) / jacobian, -(zz * rq - rz * qz) / jacobian
             stable = zz < 0.0 and jacobian > 0.0
@@ -67,8 +73,7 @@ def equilibrium(p):
 @compiled
 def _acceleration_per_displacement(p):
     """Derivative of z'' by z (1/s^2), without friction and effects."""
-    s, lift = p.suspension, p.geometry.column_ratio * p.geometry.cos_column
-    return _response(-s.wedge_spring * lift, -s.bolster_spring, 0.0, NO_FRICTION, p)[0]
+    return reactions(loads_per_displacement(p), NO_FRICTION, p)[0].acceleration
 
 
 def resonance(p: np.void) -> float:

@@ -17,10 +17,9 @@ from wedgesweep.systems.suspension.linear_slip import (
     Phase,
     acceleration,
     advanced_briefly,
-    force_rates,
+    force_sample,
     jerk,
     motion,
-    normal_forces,
     rotated,
     small_angles,
     snap,
@@ -56,10 +55,11 @@ def _slip(phase, oscillator, mode, p):
 @inlined
 def _force(which, phase, oscillator, mode, p):
     """The normal force on a face (N), times the sign that it has on the mode."""
-    values, slopes = normal_forces(phase, oscillator, p), force_rates(phase, oscillator, p)
-    if which == COLUMN_FORCE:
-        return Sample(mode.column_sign * values[0], mode.column_sign * slopes[0])
-    return Sample(mode.bolster_sign * values[1], mode.bolster_sign * slopes[1])
+    force, sign = oscillator.column, mode.column_sign
+    if which == BOLSTER_FORCE:
+        force, sign = oscillator.bolster, mode.bolster_sign
+    now = force_sample(force, phase, oscillator, p)
+    return Sample(sign * now.value, sign * now.slope)
 
 
 @inlined
@@ -78,38 +78,22 @@ def _value(time, function):
 
 
 @inlined
-def _least_force(sign, offset, by_x, by_u, amplitude, oscillator, p):
-    """Lower bound of a normal force (N) offset + by_x x + by_u u'', times its sign, while the mode lasts.
+def _least_force(sign, force, amplitude, oscillator, p):
+    """Lower bound of a normal force (N), times its sign, while the mode lasts.
 
     ``amplitude`` (m): of the free part of x.
     """
-    driven = by_x * oscillator.forced - by_u * p.input.amplitude * p.input.omega**2
-    return sign * (offset + by_x * oscillator.centre) - abs(driven) - abs(by_x) * amplitude
+    driven = force.by_x * oscillator.forced - force.by_u * p.input.amplitude * p.input.omega**2
+    steady = force.at_rest + force.by_x * oscillator.centre
+    return sign * steady - abs(driven) - abs(force.by_x) * amplitude
 
 
 @inlined
 def _forces_may_vanish(phase, oscillator, mode, p):
     """Whether a normal force may become zero on the mode."""
     amplitude = sqrt(phase.free**2 + phase.quadrature**2)
-    column = _least_force(
-        mode.column_sign,
-        oscillator.column,
-        oscillator.column_x,
-        oscillator.column_u,
-        amplitude,
-        oscillator,
-        p,
-    )
-    bolster = _least_force(
-        mode.bolster_sign,
-        oscillator.bolster,
-        oscillator.bolster_x,
-        oscillator.bolster_u,
-        amplitude,
-        oscillator,
-        p,
-    )
-    return min(column, bolster) <= 0.0
+    column = _least_force(mode.column_sign, oscillator.column, amplitude, oscillator, p)
+    return min(column, _least_force(mode.bolster_sign, oscillator.bolster, amplitude, oscillator, p)) <= 0.0
 
 
 @inlined
@@ -181,12 +165,9 @@ def slip_to_event(state, phase, stop, oscillator, p):
         later = rotated(phase, *turn) if span == step else advanced_briefly(phase, span, oscillator, p)
         found = _earlier((inf, -1), _EventFunction(SLIP, phase, oscillator, mode, p), later, span, at_zero)
         if forces:
-            found = _earlier(
-                found, _EventFunction(COLUMN_FORCE, phase, oscillator, mode, p), later, span, at_zero
-            )
-            found = _earlier(
-                found, _EventFunction(BOLSTER_FORCE, phase, oscillator, mode, p), later, span, at_zero
-            )
+            for face in (COLUMN_FORCE, BOLSTER_FORCE):
+                function = _EventFunction(face, phase, oscillator, mode, p)
+                found = _earlier(found, function, later, span, at_zero)
         time, which = found
         if which >= 0:
             event = oscillator.event if which == SLIP else COLUMN_NORMAL - COLUMN_FORCE + which

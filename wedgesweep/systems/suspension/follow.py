@@ -4,8 +4,8 @@ from wedgesweep.compiled import inlined, inner
 from wedgesweep.hybrid import interface
 from wedgesweep.hybrid.interface import implement
 from wedgesweep.hybrid.recorder import record_constant
-from wedgesweep.hybrid.state import State
-from wedgesweep.systems.suspension.breakaway import breakaway_time
+from wedgesweep.hybrid.state import NO_EVENT, State
+from wedgesweep.systems.suspension.breakaway import breakaway_between, breakaway_range
 from wedgesweep.systems.suspension.modes import stuck
 from wedgesweep.systems.suspension.regularised_slip import follow_linear, follow_regularised
 from wedgesweep.systems.suspension.stick_slip import stick_slip
@@ -28,7 +28,11 @@ def follow(state, stop, p, keeping, recorder, work):
             return True, state, event
     if not stuck(state.mode, p):
         return follow_linear(state, stop, p, keeping, recorder)
-    end, event = breakaway_time(state, stop, p)
+    forward, backward, loaded = breakaway_range(state.y, state.mode.segment, p)
+    if not loaded:
+        # The system for joints that can open takes over; other joints are followed step by step.
+        return p.geometry.opens != 0, state, NO_EVENT
+    end, event = breakaway_between(forward, backward, state.t, stop, p)
     if keeping:
         record_constant(state.t, end, state.y, state.mode, recorder, p)
     return True, State(end, state.y, state.mode, state.last_event, state.step), event

@@ -101,7 +101,7 @@ def force_of_motion(t, acceleration, y, mode, p):
 
 
 @inlined
-def _forces_and_power(t, y, mode, p):
+def forces_and_power(t, y, mode, p):
     """Normal forces on column and bolster (N), and the power of friction (W), in a mode that slips."""
     if held(mode):
         now, power, _ = filippov_forces(t, y, mode, p)
@@ -116,7 +116,7 @@ def powers(t, y, mode, p):
     """Power taken and supplied, and the normal forces."""
     column, bolster, power = nan, nan, 0.0
     if not stuck(mode, p):
-        column, bolster, power = _forces_and_power(t, y, mode, p)
+        column, bolster, power = forces_and_power(t, y, mode, p)
     supplied = supplied_power(excitation.acceleration(t, p), y, p)
     return power + damping_power(y, p), supplied, column, bolster
 

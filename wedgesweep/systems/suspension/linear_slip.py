@@ -12,13 +12,28 @@ from typing import NamedTuple
 from wedgesweep import friction
 from wedgesweep.compiled import inlined, inner
 from wedgesweep.effects import guide_friction
+from wedgesweep.hybrid.search import Sample
 from wedgesweep.systems.suspension.faces import coefficients
 from wedgesweep.systems.suspension.modes import BOLSTER, COLUMN, GUIDE
-from wedgesweep.systems.suspension.newton import Coefficients, Loads, loads, reactions
+from wedgesweep.systems.suspension.newton import (
+    UNIT_BASE,
+    Coefficients,
+    loads,
+    loads_per_displacement,
+    reactions,
+)
 from wedgesweep.trigonometry import cosine, sine, small_turn
 
 # Relative distance of both squared frequencies below which the forced and the free part nearly cancel.
 RESONANT = 1e-4
+
+
+class NormalForce(NamedTuple):
+    """Normal force of a face: n0 (N), nx (N/m), nu (kg)."""
+
+    at_rest: float
+    by_x: float
+    by_u: float
 
 
 class LinearOscillator(NamedTuple):
@@ -29,12 +44,8 @@ class LinearOscillator(NamedTuple):
     centre: float  # m
     forced: float  # m
     driven: float  # cu
-    column: float  # n0 (N), nx (N/m), nu (kg) of the column face
-    column_x: float
-    column_u: float
-    bolster: float  # and of the bolster face
-    bolster_x: float
-    bolster_u: float
+    column: NormalForce
+    bolster: NormalForce
     column_mu: float  # signed, for T = mu N: with the sign of the normal force
     bolster_mu: float
     threshold: float  # |z'| at which the mode ends, m/s
@@ -69,16 +80,13 @@ def constant_friction(mode, p):
 def linear_oscillator(y, mode, p):
     """Closed form of a mode; ``linear`` is False if friction is not constant, or near resonance."""
     if not (p.geometry.always_well_posed and constant_friction(mode, p)):
-        return LinearOscillator(False, inf, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1)
-    s, g, omega = p.suspension, p.geometry, p.input.omega
+        none = NormalForce(0.0, 0.0, 0.0)
+        return LinearOscillator(False, inf, 0.0, 0.0, 0.0, none, none, 0.0, 0.0, 0.0, -1)
+    omega = p.input.omega
     column_mu, bolster_mu = coefficients(0.0, y, mode, p)
     mu = Coefficients(mode.column_sign * column_mu, mode.bolster_sign * bolster_mu, 0.0, 0.0)
     at_rest = reactions(loads(0.0, (0.0, 0.0), mode, p), mu, p)[0]
-    driven = reactions(Loads(0.0, 0.0, 0.0, 0.0, 0.0, 1.0), mu, p)[0]
-    wedge = -s.wedge_spring * g.column_ratio * g.cos_column
-    by_x = reactions(
-        Loads(wedge * g.cos_column, wedge * g.sin_column, -s.bolster_spring, 0.0, 0.0, 0.0), mu, p
-    )[0]
+    driven, by_x = reactions(UNIT_BASE, mu, p)[0], reactions(loads_per_displacement(p), mu, p)[0]
     square = -by_x.acceleration
     linear = square > 0.0 and abs(square - omega**2) > RESONANT * omega**2
     if not linear:
@@ -90,12 +98,8 @@ def linear_oscillator(y, mode, p):
         at_rest.acceleration / square,
         driven.acceleration * p.input.amplitude * omega**2 / (omega**2 - square),
         driven.acceleration,
-        at_rest.column,
-        by_x.column,
-        driven.column,
-        at_rest.bolster,
-        by_x.bolster,
-        driven.bolster,
+        NormalForce(at_rest.column, by_x.column, driven.column),
+        NormalForce(at_rest.bolster, by_x.bolster, driven.bolster),
         mu.column,
         mu.bolster,
         threshold,
@@ -197,41 +201,6 @@ def snap(phase, oscillator, p):
 
 
 @inlined
-def normal_forces(phase, oscillator, p):
-    """Normal forces (N) on column and bolster face."""
-    return _forces_at(motion(phase, oscillator, p)[0], base_acceleration(phase, p), oscillator)
-
-
-@inlined
-def _forces_at(x, u2, oscillator):
-    column = oscillator.column + oscillator.column_x * x + oscillator.column_u * u2
-    bolster = oscillator.bolster + oscillator.bolster_x * x + oscillator.bolster_u * u2
-    return column, bolster
-
-
-@inlined
-def force_rates(phase, oscillator, p):
-    """Rates of the ``normal_forces`` (N/s)."""
-    velocity = motion(phase, oscillator, p)[1]
-    u3 = -p.input.amplitude * p.input.omega**3 * phase.cosine
-    return (
-        oscillator.column_x * velocity + oscillator.column_u * u3,
-        oscillator.bolster_x * velocity + oscillator.bolster_u * u3,
-    )
-
-
-@inlined
-def force_accelerations(phase, oscillator, p):
-    """Second derivatives of the ``normal_forces`` (N/s^2)."""
-    x2 = acceleration(phase, oscillator, p)
-    u4 = p.input.amplitude * p.input.omega**4 * phase.sine
-    return (
-        oscillator.column_x * x2 + oscillator.column_u * u4,
-        oscillator.bolster_x * x2 + oscillator.bolster_u * u4,
-    )
-
-
-@inlined
 def base_acceleration(phase, p):
     """Base acceleration u'' (m/s^2)."""
     return -p.input.amplitude * p.input.omega**2 * phase.sine
@@ -244,7 +213,31 @@ def acceleration_at(x, u2, oscillator):
 
 
 @inlined
+def force_at(force, x, u2):
+    """A normal force (N), likewise."""
+    return force.at_rest + force.by_x * x + force.by_u * u2
+
+
+@inlined
 def smaller_force_at(x, u2, oscillator):
     """The smaller one of both normal forces (N), likewise."""
-    column, bolster = _forces_at(x, u2, oscillator)
-    return min(column, bolster)
+    return min(force_at(oscillator.column, x, u2), force_at(oscillator.bolster, x, u2))
+
+
+@inlined
+def force_sample(force, phase, oscillator, p):
+    """A normal force (N) and its rate."""
+    x = motion(phase, oscillator, p)[0]
+    rate = force_rate(force, phase, oscillator, p).value
+    return Sample(force_at(force, x, base_acceleration(phase, p)), rate)
+
+
+@inlined
+def force_rate(force, phase, oscillator, p):
+    """Rate of a normal force (N/s) and its slope."""
+    base, omega = p.input.amplitude, p.input.omega
+    velocity, x2 = motion(phase, oscillator, p)[1], acceleration(phase, oscillator, p)
+    return Sample(
+        force.by_x * velocity - force.by_u * base * omega**3 * phase.cosine,
+        force.by_x * x2 + force.by_u * base * omega**4 * phase.sine,
+    )

@@ -27,13 +27,13 @@ from wedgesweep.systems.suspension.linear_slip import (
     advanced,
     advanced_briefly,
     angles,
-    force_accelerations,
-    force_rates,
+    base_acceleration,
+    force_rate,
     jerk,
     motion,
-    normal_forces,
     rotated,
     small_angles,
+    smaller_force_at,
 )
 
 # Scanned intervals per period, in each of which a rate changes its sign at most once; error of the place of
@@ -54,26 +54,17 @@ class _Rate(NamedTuple):
     p: Any
 
 
-class _Rates(NamedTuple):
-    """Rates of the velocity and of both normal forces."""
-
-    velocity: Sample
-    column: Sample
-    bolster: Sample
-
-
 @inlined
 def _rate(which, phase, oscillator, p):
     """A rate and its slope."""
     if which == VELOCITY:
         return Sample(acceleration(phase, oscillator, p), jerk(phase, oscillator, p))
-    place = which - COLUMN
-    return Sample(force_rates(phase, oscillator, p)[place], force_accelerations(phase, oscillator, p)[place])
+    return force_rate(oscillator.column if which == COLUMN else oscillator.bolster, phase, oscillator, p)
 
 
 @inlined
 def _rates(phase, oscillator, p):
-    return _Rates(
+    return (
         _rate(VELOCITY, phase, oscillator, p),
         _rate(COLUMN, phase, oscillator, p),
         _rate(BOLSTER, phase, oscillator, p),
@@ -92,8 +83,8 @@ def _signed(time, rate):
 def _add_point(phase, oscillator, recorder, p):
     """Add what may be an extreme."""
     x, velocity = motion(phase, oscillator, p)
-    column, bolster = normal_forces(phase, oscillator, p)
-    add_extremes(recorder.sums[0], x, velocity, min(column, bolster), recorder.energies)
+    force = smaller_force_at(x, base_acceleration(phase, p), oscillator)
+    add_extremes(recorder.sums[0], x, velocity, force, recorder.energies)
 
 
 @inner
@@ -127,6 +118,12 @@ def _add_extremes(phase, duration, oscillator, recorder, p):
 
 
 @inlined
+def _force_times_motion(force, travelled, square, base):
+    """Integral of a normal force over x (J), from those of 1, x and u''."""
+    return force.at_rest * travelled + force.by_x * square + force.by_u * base
+
+
+@inlined
 def _work(start, end, oscillator, mode, p):
     """Work (J) that friction takes and that the base supplies between two phases of a mode."""
     g, omega, frequency = p.geometry, p.input.omega, oscillator.frequency
@@ -137,8 +134,8 @@ def _work(start, end, oscillator, mode, p):
     free = (omega * of_quadrature + frequency * of_free) / (frequency**2 - omega**2)
     sine = 0.5 * oscillator.forced * (end.sine**2 - start.sine**2) + frequency * free
     base = -p.input.amplitude * omega**2 * sine
-    column = oscillator.column * travelled + oscillator.column_x * square + oscillator.column_u * base
-    bolster = oscillator.bolster * travelled + oscillator.bolster_x * square + oscillator.bolster_u * base
+    column = _force_times_motion(oscillator.column, travelled, square, base)
+    bolster = _force_times_motion(oscillator.bolster, travelled, square, base)
     faces = oscillator.column_mu * g.column_ratio * column + oscillator.bolster_mu * g.bolster_ratio * bolster
     taken = 2.0 * faces - guide_friction.force(motion(start, oscillator, p)[1], mode.guide, p) * travelled
     return taken, supplied_power(base, (0.0, 1.0), p)

@@ -11,6 +11,8 @@ X, VELOCITY = 0, 1
 # the upper end of its branch.
 COLUMN, BOLSTER, GUIDE, DIRECTION = 0, 1, 2, 4  # the event functions of the normal forces stand between
 AXES = 5
+# Places of numbers in a mode.
+SEGMENT, CLOCK = 6, 7
 # Branch of an axis whose slip velocity a jump at +-v_t holds (Filippov), with the sign of that velocity.
 HELD = 2
 
@@ -92,20 +94,6 @@ def with_branch(mode, axis, value, p):
 def with_signs(mode, column_sign, bolster_sign):
     """The mode with other signs of the normal forces."""
     column, bolster, guide, _, _, direction, segment, clock = mode
-    return ContactMode(column, bolster, guide, column_sign, bolster_sign, direction, segment, clock)
-
-
-@inlined
-def with_segment(mode, segment):
-    """The mode in another segment of the travel."""
-    column, bolster, guide, column_sign, bolster_sign, direction, _, clock = mode
-    return ContactMode(column, bolster, guide, column_sign, bolster_sign, direction, segment, clock)
-
-
-@inlined
-def with_clock(mode, clock):
-    """The mode in which the time at rest runs, or does not."""
-    column, bolster, guide, column_sign, bolster_sign, direction, segment, _ = mode
     return ContactMode(column, bolster, guide, column_sign, bolster_sign, direction, segment, clock)
 
 

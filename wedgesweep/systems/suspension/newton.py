@@ -82,8 +82,31 @@ class Coefficients(NamedTuple):
     bolster_tau: float
 
 
+class Closed(NamedTuple):
+    """Constants of the equations of a wedge between two closed contacts; mu is that of the bolster face.
+
+    Per N_b, along the column: ``along`` + ``along_mu`` mu, normal to it ``into`` + ``into_mu`` mu, and z'' by
+    ``push`` + ``push_mu`` mu (1/kg). ``mobility``: z'' per force on the bolster (1/kg), ``inertia``: force of
+    a wedge along the column per force on the bolster; ``along_base``, ``into_base``: force of a wedge per
+    acceleration of the side frame (kg).
+    """
+
+    along: float
+    along_mu: float
+    into: float
+    into_mu: float
+    push: float
+    push_mu: float
+    mobility: float
+    inertia: float
+    along_base: float
+    into_base: float
+
+
 NO_FRICTION = Coefficients(0.0, 0.0, 0.0, 0.0)
 UNDETERMINED = Forces(nan, nan, nan, nan, nan)
+# Loads while the side frame accelerates by 1 m/s^2.
+UNIT_BASE = Loads(0.0, 0.0, 0.0, 0.0, 0.0, 1.0)
 
 
 @inlined
@@ -96,15 +119,24 @@ def _rise(z, y, p):
 
 
 @inlined
+def applied_forces(rise, y, segment, guide, p):
+    """Forces (N, up positive) on a wedge that has risen by ``rise`` (m) and on the bolster, but for contacts.
+
+    ``segment`` of the travel of the bolster, and its slip branch in the ``guide``.
+    """
+    s, z, velocity = p.suspension, p.geometry.rest + y[X], y[VELOCITY]
+    wedge = s.wedge_preload - s.wedge_spring * rise - s.wedge_mass * s.gravity
+    bolster = hooks.force_on_mass(z, velocity, y, p) + hooks.damping(velocity, y, p)
+    bolster += travel.force(y[X], segment, s.bolster_spring, p)
+    bolster -= s.bolster_spring * z + s.bolster_mass * s.gravity
+    return wedge, bolster + guide_friction.force(velocity, guide, p)
+
+
+@inlined
 def loads(t, y, mode, p):
     """Loads at a state; see ``Loads``."""
-    s, g = p.suspension, p.geometry
-    z, velocity = g.rest + y[X], y[VELOCITY]
-    wedge = s.wedge_preload - s.wedge_spring * _rise(z, y, p) - s.wedge_mass * s.gravity
-    bolster = hooks.force_on_mass(z, velocity, y, p) + hooks.damping(velocity, y, p)
-    bolster += travel.force(y[X], mode.segment, s.bolster_spring, p)
-    bolster -= s.bolster_spring * z + s.bolster_mass * s.gravity
-    bolster += guide_friction.force(velocity, mode.guide, p)
+    g = p.geometry
+    wedge, bolster = applied_forces(_rise(g.rest + y[X], y, p), y, mode.segment, mode.guide, p)
     return Loads(
         wedge * g.cos_column,
         wedge * g.sin_column,
@@ -112,6 +144,34 @@ def loads(t, y, mode, p):
         column_compliance.force(y, p),
         fixture_resonance.force(y, p),
         acceleration(t, p),
+    )
+
+
+@inlined
+def loads_per_displacement(p):
+    """Change of the loads by x (N/m), without effects."""
+    s, g = p.suspension, p.geometry
+    wedge = -s.wedge_spring * g.column_ratio * g.cos_column
+    return Loads(wedge * g.cos_column, wedge * g.sin_column, -s.bolster_spring, 0.0, 0.0, 0.0)
+
+
+@inlined
+def closed_contacts(p):
+    """``Closed`` of a case."""
+    s, g = p.suspension, p.geometry
+    mobility, along = 1.0 / s.bolster_mass, s.wedge_mass * g.column_ratio
+    push, push_mu = 2.0 * mobility * g.sin_wedge, 2.0 * mobility * g.cos_wedge
+    return Closed(
+        g.sin_included + along * push,
+        g.cos_included + along * push_mu,
+        -g.cos_included,
+        g.sin_included,
+        push,
+        push_mu,
+        mobility,
+        along * mobility,
+        s.wedge_mass * (g.cos_column - g.column_ratio),
+        s.wedge_mass * g.sin_column,
     )
 
 
@@ -125,18 +185,16 @@ def reactions(load, mu, p):
     after z'', Q'' and A are eliminated. Each stage of an integrator waits for this result: factors that do
     not depend on the loads are multiplied by each other first.
     """
-    s, g = p.suspension, p.geometry
-    lift = g.sin_wedge + mu.bolster * g.cos_wedge
-    mobility = 1.0 / s.bolster_mass
-    inertia = s.wedge_mass * g.column_ratio * mobility
-    a11, a12 = mu.column, g.sin_included + mu.bolster * g.cos_included + 2.0 * lift * inertia
-    a21, a22 = 1.0, mu.bolster * g.sin_included - g.cos_included
+    s, g, closed = p.suspension, p.geometry, closed_contacts(p)
+    push = closed.push + mu.bolster * closed.push_mu
+    a11, a12 = mu.column, closed.along + mu.bolster * closed.along_mu
+    a21, a22 = 1.0, closed.into + mu.bolster * closed.into_mu
     tangential, normal, vertical = load.tangential, load.normal, load.vertical
     if load_dependent_friction.acts(p):
         tangential -= mu.column_tau + mu.bolster_tau * g.cos_included
         normal -= mu.bolster_tau * g.sin_included
         vertical += 2.0 * mu.bolster_tau * g.cos_wedge
-    tangential -= inertia * vertical
+    tangential -= closed.inertia * vertical
 
     # Acceleration of a column: Q'' = outward + outward_per_force N_c.
     outward, outward_per_force = 0.0, 0.0
@@ -153,21 +211,19 @@ def reactions(load, mu, p):
 
     # Acceleration of the side frame: A = base + base_per_column N_c + base_per_bolster N_b.
     base, base_per_column, base_per_bolster, mass = load.base, 0.0, 0.0, 1.0
-    along_base = s.wedge_mass * (g.cos_column - g.column_ratio)
-    into_base = s.wedge_mass * g.sin_column
     if fixture_resonance.acts(p):
         carried = (s.bolster_mass + 2.0 * s.wedge_mass * g.column_ratio * g.cos_column) / s.bolster_mass
         mass = s.side_frame_mass + 2.0 * s.wedge_mass * (1.0 - g.column_ratio * g.cos_column)
         aside = 2.0 * s.wedge_mass * g.lift_ratio
         base = (load.frame - carried * vertical - aside * outward) / mass
-        base_per_bolster = -2.0 * carried * lift / mass
+        base_per_bolster = -carried * s.bolster_mass * push / mass
         base_per_column = -aside * outward_per_force / mass
-        a11 += along_base * base_per_column
-        a12 += along_base * base_per_bolster
-        a21 += into_base * base_per_column
-        a22 += into_base * base_per_bolster
-    tangential -= along_base * base
-    normal -= into_base * base
+        a11 += closed.along_base * base_per_column
+        a12 += closed.along_base * base_per_bolster
+        a21 += closed.into_base * base_per_column
+        a22 += closed.into_base * base_per_bolster
+    tangential -= closed.along_base * base
+    normal -= closed.into_base * base
 
     determinant = a11 * a22 - a12 * a21
     inverse = 1.0 / determinant
@@ -176,7 +232,7 @@ def reactions(load, mu, p):
     frame = base
     if fixture_resonance.acts(p):
         frame += base_per_column * column + base_per_bolster * bolster
-    z2 = vertical * mobility - frame + (2.0 * lift * mobility) * bolster
+    z2 = vertical * closed.mobility - frame + push * bolster
     # A light side frame whose columns lean outward has a negative ``mass``: the determinant is divided by it.
     determinant *= mass
     return Forces(z2, outward + outward_per_force * column, frame - load.base, column, bolster), determinant

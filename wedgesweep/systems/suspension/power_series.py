@@ -1,8 +1,7 @@
 """The motion of the base model as a power series in time, while friction is linear in z' or a power of it.
 
 Each coefficient follows from those before it, by products of series like mu_c = c_0 + c_1 s + c_2 s^2 + ...
-
-    z'' (D_0 + D_1 mu_b) = A_0 + A_1 mu_b,    A_0, A_1, D_0 and D_1 linear in mu_c (rational.py)
+The equations are those of ``newton.reactions``, with the constants of ``newton.Closed``.
 
 For the method see Jorba and Zou (2005), A software package for the numerical integration of ODEs by means of
 high-order Taylor methods.
@@ -23,11 +22,26 @@ class Face(NamedTuple):
     power: float
 
 
+class Equations(NamedTuple):
+    """Newton's equations as ``newton.closed_contacts`` and loads.
+
+    Loads are forces on a wedge along and normal to the column (N), and z'' without contact forces (m/s^2): at
+    x = 0, and their changes by x and by u''. ``loaded``: the |x| (m) up to which both faces carry load under
+    any friction.
+    """
+
+    at_rest: Any
+    by_x: Any
+    by_u: Any
+    closed: Any
+    loaded: float
+
+
 class Motion(NamedTuple):
     """What a series begins with.
 
     Displacement (m), velocity (m/s), base acceleration (m/s^2) and its rate, squared angular frequency of the
-    input, friction of both faces, the exponent of powers, and ``rational.RationalAcceleration``.
+    input, friction of both faces, the exponent of powers, and ``Equations``.
     """
 
     x: float
@@ -38,7 +52,7 @@ class Motion(NamedTuple):
     column: Face
     bolster: Face
     exponent: float
-    forces: Any
+    equations: Any
 
 
 class Series(NamedTuple):
@@ -65,46 +79,47 @@ def _next_power(m: list, v: list, exponent: Any) -> Any:
 
 
 class _Acceleration:
-    """The series of z'' and of all that it needs."""
+    """The series of z'' and of what it needs: determinant (z'' - free) = push (mu_c normal - tangential)."""
 
-    def __init__(self, forces: Any) -> None:
-        self.forces = forces
+    def __init__(self, equations: Equations) -> None:
+        self.equations = equations
         self.column_mu: list = []
-        self.bolster_mu: list = []
-        self.loads: tuple[list, ...] = [], [], [], []
-        self.a1: list = []
-        self.d1: list = []
-        self.d: list = []
-        self.a: list = []
+        self.into: list = []
+        self.push: list = []
+        self.normal: list = []
+        self.load: list = []
+        self.determinant: list = []
+        self.by_contact: list = []
 
     def append(self, x: Any, u2: Any, column_mu: Any, bolster_mu: Any) -> Any:
         """The next coefficient, from those of x, u'' and both coefficients of friction."""
-        forces, k = self.forces, len(self.a)
+        at_rest, by_x, by_u, closed, _ = self.equations
+        k = len(self.load)
+        tangential, normal, free = (by_x[i] * x + by_u[i] * u2 for i in range(3))
+        along, into = closed.along_mu * bolster_mu, closed.into_mu * bolster_mu
+        push = closed.push_mu * bolster_mu
+        if k == 0:
+            tangential, normal, free = tangential + at_rest[0], normal + at_rest[1], free + at_rest[2]
+            along, into, push = along + closed.along, into + closed.into, push + closed.push
+        self.normal.append(normal)
         self.column_mu.append(column_mu)
-        self.bolster_mu.append(bolster_mu)
-        for i, load in enumerate(self.loads):
-            acting = forces.by_x[i] * x + forces.by_u[i] * u2
-            load.append(acting + forces.at_rest[i] if k == 0 else acting)
-        constant, column, bolster, both = self.loads
-        self.a1.append(bolster[k] + _product(self.column_mu, both, k))
-        d0, d1 = forces.determinant.column * column_mu, forces.determinant.both * column_mu
+        self.into.append(into)
+        self.push.append(push)
+        self.load.append(_product(self.column_mu, self.normal, k) - tangential)
+        self.determinant.append(_product(self.column_mu, self.into, k) - along)
+        total = _product(self.push, self.load, k)
         if k == 0:
-            d0, d1 = d0 + forces.determinant.constant, d1 + forces.determinant.bolster
-        self.d1.append(d1)
-        self.d.append(d0 + _product(self.d1, self.bolster_mu, k))
-        total = constant[k] + _product(self.column_mu, column, k) + _product(self.bolster_mu, self.a1, k)
-        if k == 0:
-            self.inverse = 1.0 / self.d[0]
+            self.inverse = 1.0 / self.determinant[0]
         else:
-            total = total - _product(self.d, self.a, k, 1)
-        self.a.append(self.inverse * total)
-        return self.a[k]
+            total = total - _product(self.determinant, self.by_contact, k, 1)
+        self.by_contact.append(self.inverse * total)
+        return free + self.by_contact[k]
 
 
 def expanded(motion: Motion, powers: bool) -> Series:
     """The series of a motion, of numbers or symbols; with ``powers`` beyond a constant and a slope."""
     x, v, u2, m = [motion.x], [motion.velocity], [motion.u2, motion.u3], [1.0]
-    acceleration = _Acceleration(motion.forces)
+    acceleration = _Acceleration(motion.equations)
     for k in range(ORDER):
         if k > 1:
             u2.append(motion.square * u2[k - 2] * (-1.0 / (k * (k - 1))))
@@ -114,8 +129,7 @@ def expanded(motion: Motion, powers: bool) -> Series:
         for face in (motion.column, motion.bolster):
             mu = face.slope * v[k]
             both.append(mu + face.power * m[k] if k < len(m) else mu)
-        a = acceleration.append(x[k], u2[k], *both)
-        v.append(a * (1.0 / (k + 1)))
+        v.append(acceleration.append(x[k], u2[k], *both) * (1.0 / (k + 1)))
         x.append(v[k] * (1.0 / (k + 1)))
     return Series(tuple(x), tuple(v))
 

@@ -5,7 +5,7 @@ it, power series (power_series.py) make the steps. They go on beyond the end of 
 no step has to be repeated there.
 """
 
-from math import isfinite, pi, sqrt
+from math import inf, isfinite, pi, sqrt
 
 from wedgesweep import excitation, friction
 from wedgesweep.compiled import inlined, inner
@@ -21,8 +21,8 @@ from wedgesweep.systems.suspension.first_event import slip_to_event
 from wedgesweep.systems.suspension.linear_slip import constant_friction, linear_oscillator, phase_at
 from wedgesweep.systems.suspension.linear_slip_sums import record_slip
 from wedgesweep.systems.suspension.modes import HELD
-from wedgesweep.systems.suspension.power_series import ORDER, Face, Motion, expand, expand_powers
-from wedgesweep.systems.suspension.rational import rational_acceleration
+from wedgesweep.systems.suspension.newton import UNIT_BASE, closed_contacts, loads, loads_per_displacement
+from wedgesweep.systems.suspension.power_series import ORDER, Equations, Face, Motion, expand, expand_powers
 from wedgesweep.systems.suspension.series_events import ends_of, first_event
 
 # Modes after which the integrator checks the number of events.
@@ -47,19 +47,57 @@ def _face(ratio, branch, y, mode, p):
 
 
 @inlined
-def _motion(t, y, mode, forces, p):
+def _without_contact(load, closed):
+    """What ``Equations`` hold, under loads."""
+    return (
+        load.tangential - closed.inertia * load.vertical - closed.along_base * load.base,
+        load.normal - closed.into_base * load.base,
+        closed.mobility * load.vertical - load.base,
+    )
+
+
+@inlined
+def _normal_forces(load, column_mu, bolster_mu, closed):
+    """Normal forces on column and bolster face (N), under a load of ``Equations``."""
+    into = closed.into + bolster_mu * closed.into_mu
+    along = closed.along + bolster_mu * closed.along_mu
+    bolster = (column_mu * load[1] - load[0]) / (column_mu * into - along)
+    return load[1] - into * bolster, bolster
+
+
+@inner
+def equations_of(mode, p):
+    """``Equations`` of a case without friction of the guide, which would depend on the mode."""
+    closed, loaded = closed_contacts(p), inf
+    at_rest = _without_contact(loads(0.0, (0.0, 0.0), mode, p), closed)
+    by_x = _without_contact(loads_per_displacement(p), closed)
+    by_u = _without_contact(UNIT_BASE, closed)
+    most = max(friction.static(mode.clock, (0.0, 0.0), p), friction.sliding(p.friction.v_t, p))
+    most_u = p.input.amplitude * p.input.omega**2
+    # Normal forces times the determinant are linear in x, u'' and each coefficient: least at a corner.
+    for column_mu, bolster_mu in ((most, most), (most, -most), (-most, most), (-most, -most)):
+        rest = _normal_forces(at_rest, column_mu, bolster_mu, closed)
+        of_x = _normal_forces(by_x, column_mu, bolster_mu, closed)
+        of_u = _normal_forces(by_u, column_mu, bolster_mu, closed)
+        for face in range(2):
+            loaded = min(loaded, (rest[face] - abs(of_u[face]) * most_u) / abs(of_x[face]))
+    return Equations(at_rest, by_x, by_u, closed, loaded)
+
+
+@inlined
+def _motion(t, y, mode, equations, p):
     """What the series from a state on begins with."""
     g, square = p.geometry, p.input.omega**2
     column = _face(g.column_ratio, mode.column, y, mode, p)
     bolster = _face(g.bolster_ratio, mode.bolster, y, mode, p)
     u2, u3 = excitation.acceleration(t, p), -square * excitation.velocity(t, p)
-    return Motion(y[0], y[1], u2, u3, square, column, bolster, friction.exponent(p), forces)
+    return Motion(y[0], y[1], u2, u3, square, column, bolster, friction.exponent(p), equations)
 
 
 @inlined
-def _expanded(t, y, mode, forces, p):
+def _expanded(t, y, mode, equations, p):
     """The series from a state on."""
-    motion = _motion(t, y, mode, forces, p)
+    motion = _motion(t, y, mode, equations, p)
     if motion.exponent == 0.0 or (mode.column == 0 and mode.bolster == 0):
         return expand(motion)
     return expand_powers(motion)
@@ -89,9 +127,9 @@ def _smaller_force(t, y, mode, p):
 
 
 @inlined
-def _may_unload(t, h, series, forces, mode, p):
+def _may_unload(t, h, series, loaded, mode, p):
     """Whether a normal force may vanish in a step."""
-    if abs(series.x[0]) + largest_change(series.x, h) < forces.loaded:
+    if abs(series.x[0]) + largest_change(series.x, h) < loaded:
         return False
     before = _smaller_force(t, _state_at(0.0, series), mode, p)
     middle = _smaller_force(t + 0.5 * h, _state_at(0.5 * h, series), mode, p)
@@ -100,7 +138,7 @@ def _may_unload(t, h, series, forces, mode, p):
 
 
 @inlined
-def _follow_series(state, stop, forces, p, keeping, recorder, work):
+def _follow_series(state, stop, equations, p, keeping, recorder, work):
     """Follow a mode as long as both faces surely carry load.
 
     Returns whether this led to its event or ``stop``, the state reached, and the event, NO_EVENT or FAILED.
@@ -110,14 +148,14 @@ def _follow_series(state, stop, forces, p, keeping, recorder, work):
     longest = period / (LEAST_STEPS_RECORDED if keeping else LEAST_STEPS)
     most_steps = step_limit(work.counts[1], (stop - t) / period)
     while t < stop:
-        series = _expanded(t, y, mode, forces, p)
+        series = _expanded(t, y, mode, equations, p)
         h = _length(series, longest, work.rtol, p)
         work.counts[0] += 1
         work.counts[1] += 1
         if not h >= SHORTEST * period or work.counts[1] > most_steps:
             return True, State(t, y, mode, last_event, h), FAILED
         taken = min(h, stop - t)
-        if _may_unload(t, taken, series, forces, mode, p):
+        if _may_unload(t, taken, series, equations.loaded, mode, p):
             return False, State(t, y, mode, last_event, h), NO_EVENT
         time, event = first_event(series.velocity, taken, last_event, ends, p)
         time = min(time, taken)
@@ -160,13 +198,13 @@ def follow_regularised(state, stop, p, keeping, recorder, work):
     """Follow modes to an event that the integrator has to see, or to ``stop``; see the interface."""
     if not p.geometry.always_well_posed:
         return False, state, NO_EVENT
-    forces = rational_acceleration(state.mode, p)
+    equations = equations_of(state.mode, p)
     for _ in range(MOST_MODES):
         done, event = False, NO_EVENT
         if constant_friction(state.mode, p):
             done, state, event = follow_linear(state, stop, p, keeping, recorder)
         if not done and _has_series(state.mode, p):
-            done, state, event = _follow_series(state, stop, forces, p, keeping, recorder, work)
+            done, state, event = _follow_series(state, stop, equations, p, keeping, recorder, work)
         if not done or event < 0 or event >= COLUMN_NORMAL:
             return done, state, event
         y, mode, certain = transition(state.t, state.y, state.mode, event, p)

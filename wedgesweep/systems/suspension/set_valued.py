@@ -5,10 +5,12 @@ from math import isnan, nan
 from wedgesweep import friction
 from wedgesweep.compiled import inlined, inner, term
 from wedgesweep.excitation import acceleration
+from wedgesweep.hybrid.vectors import replaced
 from wedgesweep.systems.suspension.faces import coefficients
-from wedgesweep.systems.suspension.modes import ContactMode, slipping, with_clock
+from wedgesweep.systems.suspension.modes import CLOCK, ContactMode, slipping
 from wedgesweep.systems.suspension.newton import (
     ROUNDING,
+    UNIT_BASE,
     Coefficients,
     Loads,
     loads,
@@ -29,7 +31,9 @@ def about_to_slip(t, y, direction, segment, p):
 @inlined
 def acceleration_on_breakaway(t, y, direction, segment, p):
     """Acceleration z'' (m/s^2) of a breakaway in a direction, less what locked-in forces hold back."""
-    return about_to_slip(t, y, direction, segment, p)[1].acceleration + _held_back(y, direction, segment, p)
+    return (
+        about_to_slip(t, y, direction, segment, p)[1].acceleration + _locked_in(y, direction, segment, p)[1]
+    )
 
 
 @inlined
@@ -46,7 +50,7 @@ def _balance(load, column_mu, bolster_mu, p):
     """
     mu = Coefficients(column_mu, bolster_mu, 0.0, 0.0)
     at_rest = reactions(_with_base(load, 0.0), mu, p)[0].acceleration
-    inertia = reactions(Loads(0.0, 0.0, 0.0, 0.0, 0.0, 1.0), mu, p)[0].acceleration
+    inertia = reactions(UNIT_BASE, mu, p)[0].acceleration
     limit = -at_rest / inertia
     there = reactions(_with_base(load, limit), mu, p)[0]
     return limit if min(there.column, there.bolster) > 0.0 else nan, inertia
@@ -60,28 +64,20 @@ def _verge(y, direction, segment, p):
     return loads(0.0, y, mode, p), column_mu, bolster_mu
 
 
-@term("jamming", off="0.0")
+@term("jamming", off="(0.0, 0.0)")
 def _locked_in(y, direction, segment, p):
-    """Base acceleration (m/s^2) by which locked-in forces delay a breakaway."""
-    if p.jamming.locked_in == 0.0:
-        return 0.0
+    """What locked-in forces delay a breakaway by: base acceleration, and z'' that they take (m/s^2)."""
+    if p.jamming.locked_in == 0.0:  # on a compliant table no base acceleration holds the bolster by itself
+        return 0.0, 0.0
     load, column_mu, bolster_mu = _verge(y, direction, segment, p)
-    least = _balance(load, column_mu, bolster_mu, p)[0]
+    least, inertia = _balance(load, column_mu, bolster_mu, p)
     most = least
     for column_sign, bolster_sign in ((1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)):
         other = _balance(load, column_sign * column_mu, bolster_sign * bolster_mu, p)[0]
         if direction * (most - other) > 0.0:
             most = other
-    return 0.0 if isnan(least) else p.jamming.locked_in * (most - least)
-
-
-@term("jamming", off="0.0")
-def _held_back(y, direction, segment, p):
-    """Acceleration z'' (m/s^2) that locked-in forces take from a breakaway."""
-    if p.jamming.locked_in == 0.0:  # on a compliant table no base acceleration holds the bolster by itself
-        return 0.0
-    load, column_mu, bolster_mu = _verge(y, direction, segment, p)
-    return -_balance(load, column_mu, bolster_mu, p)[1] * _locked_in(y, direction, segment, p)
+    delay = 0.0 if isnan(least) else p.jamming.locked_in * (most - least)
+    return delay, -inertia * delay
 
 
 @inner
@@ -91,7 +87,7 @@ def breakaway_input(y, direction, segment, p):
     ``segment`` of the travel of the bolster.
     """
     load, column_mu, bolster_mu = _verge(y, direction, segment, p)
-    return _balance(load, column_mu, bolster_mu, p)[0] + _locked_in(y, direction, segment, p)
+    return _balance(load, column_mu, bolster_mu, p)[0] + _locked_in(y, direction, segment, p)[0]
 
 
 @inner
@@ -101,12 +97,12 @@ def mode_at_zero_velocity(t, y, segment, p):
     backward, falling, backward_unique = about_to_slip(t, y, -1, segment, p)
     unique = forward_unique and backward_unique
     unique = unique and not (rising.acceleration > 0.0 and falling.acceleration < 0.0)
-    upward = rising.acceleration + _held_back(y, 1, segment, p)
-    downward = falling.acceleration + _held_back(y, -1, segment, p)
+    upward = rising.acceleration + _locked_in(y, 1, segment, p)[1]
+    downward = falling.acceleration + _locked_in(y, -1, segment, p)[1]
     nearly_none = ROUNDING * (p.suspension.gravity + abs(acceleration(t, p)))
     if upward <= nearly_none and downward >= -nearly_none:
         return ContactMode(0, 0, 0, 1, 1, 0, segment, 1), unique
-    mode = with_clock(forward if upward > 0.0 else backward, 0)
+    mode = replaced(forward if upward > 0.0 else backward, CLOCK, 0)
     if friction.static(1, y, p) == friction.sliding(0.0, p):
         return mode, unique
     mode, _, certain = solve_for_signs(t, y, mode, p)

@@ -12,7 +12,7 @@ from wedgesweep.compiled import inlined, inner
 from wedgesweep.excitation import acceleration
 from wedgesweep.hybrid.recorder import record_constant
 from wedgesweep.hybrid.state import NO_EVENT, State
-from wedgesweep.systems.suspension.breakaway import UP, breakaway_between, breakaway_time
+from wedgesweep.systems.suspension.breakaway import UP, breakaway_between
 from wedgesweep.systems.suspension.first_event import slip_to_event
 from wedgesweep.systems.suspension.linear_slip import (
     LinearOscillator,
@@ -92,24 +92,12 @@ def _breakaway_input(x, verge):
     return verge.frequency**2 * (x - verge.centre) / verge.driven
 
 
-@inner
-def _breakaway_time(state, stop, up, down, p):
-    """Time at which a bolster at rest breaks away, and the event."""
-    x = state.y[0]
-    forward, backward = _breakaway_input(x, up.verge), _breakaway_input(x, down.verge)
-    smallest = min(smaller_force_at(x, forward, up.verge), smaller_force_at(x, backward, down.verge))
-    if forward < backward and smallest > 0.0:
-        return breakaway_between(forward, backward, state.t, stop, p)
-    return breakaway_time(state, stop, p)
-
-
-@inner
-def _stick(state, stop, up, down, p, keeping, recorder):
-    """Wait for breakaway or ``stop``: the time, and the event or NO_EVENT."""
-    end, event = _breakaway_time(state, stop, up, down, p)
-    if keeping:
-        record_constant(state.t, end, state.y, state.mode, recorder, p)
-    return end, event
+@inlined
+def _breakaway_range(x, up, down):
+    """As ``breakaway.breakaway_range``, from the oscillators on the verge of slip."""
+    forward, backward = _breakaway_input(x, up), _breakaway_input(x, down)
+    smallest = min(smaller_force_at(x, forward, up), smaller_force_at(x, backward, down))
+    return forward, backward, forward < backward and smallest > 0.0
 
 
 @inlined
@@ -125,7 +113,8 @@ def _slip(state, phase, stop, oscillator, p, keeping, recorder):
 def stick_slip(state, stop, p, keeping, recorder, counts):
     """Follow stick and slip to an event that another mode follows, or to ``stop``.
 
-    Returns whether both directions of slip are linear oscillators, the state, and the event or NO_EVENT.
+    Returns whether both directions of slip are linear oscillators whose faces carry load until a breakaway,
+    the state, and the event or NO_EVENT.
     """
     segment = state.mode.segment
     up, down = _direction(1, state.y, segment, p), _direction(-1, state.y, segment, p)
@@ -135,7 +124,12 @@ def stick_slip(state, stop, p, keeping, recorder, counts):
     for _ in range(MOST_MODES):
         x, velocity = state.y
         if stuck(state.mode, p):
-            t, event = _stick(state, stop, up, down, p, keeping, recorder)
+            forward, backward, loaded = _breakaway_range(x, up.verge, down.verge)
+            if not loaded:
+                return False, state, NO_EVENT
+            t, event = breakaway_between(forward, backward, state.t, stop, p)
+            if keeping:
+                record_constant(state.t, t, state.y, state.mode, recorder, p)
             if event // 2 == COLUMN:
                 mode, certain = _after_breakaway(t, x, event, up, down, p)
             turn = input_turn(t, p)

@@ -5,6 +5,7 @@ from wedgesweep.compiled import inlined, inner
 from wedgesweep.effects import ageing, directional_friction, hooks, presliding, travel
 from wedgesweep.excitation import acceleration
 from wedgesweep.hybrid.vectors import replaced, weighted
+from wedgesweep.systems.suspension import modes
 from wedgesweep.systems.suspension.events import BOLSTER_NORMAL, CLOCK, COLUMN_NORMAL, TRAVEL
 from wedgesweep.systems.suspension.faces import column_slip, slip_measure, slip_rate
 from wedgesweep.systems.suspension.filippov import forces_of_mode, resolve_mode
@@ -14,6 +15,7 @@ from wedgesweep.systems.suspension.modes import (
     DIRECTION,
     GUIDE,
     HELD,
+    SEGMENT,
     VELOCITY,
     ContactMode,
     X,
@@ -22,8 +24,6 @@ from wedgesweep.systems.suspension.modes import (
     slipping,
     stuck,
     with_branch,
-    with_clock,
-    with_segment,
 )
 from wedgesweep.systems.suspension.newton import ROUNDING, Accelerations, solve_for_signs, stuck_forces
 from wedgesweep.systems.suspension.set_valued import (
@@ -161,9 +161,9 @@ def _transition(t, y, mode, place, p):
         return y, found, certain
     if place >= TRAVEL:
         if place == CLOCK:
-            mode = with_clock(mode, 1 - mode.clock)
+            mode = replaced(mode, modes.CLOCK, 1 - mode.clock)
         else:
-            mode = with_segment(mode, travel.next_segment(mode.segment, place % 2, p))
+            mode = replaced(mode, SEGMENT, travel.next_segment(mode.segment, place % 2, p))
         found, _, certain = resolve_mode(t, y, mode, p)
         return y, found, certain
     if not p.friction.set_valued:

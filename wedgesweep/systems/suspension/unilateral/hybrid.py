@@ -16,17 +16,18 @@ from wedgesweep.hybrid.interface import implement
 from wedgesweep.hybrid.state import NO_EVENT
 from wedgesweep.hybrid.vectors import replaced
 from wedgesweep.systems.suspension import energy, events, filippov, newton, transitions
+from wedgesweep.systems.suspension.hybrid import forces_and_power
 from wedgesweep.systems.suspension.modes import (
     BOLSTER,
     COLUMN,
     GUIDE,
+    SEGMENT,
     VELOCITY,
     X,
     branch,
     held,
     mode_of,
     with_branch,
-    with_segment,
 )
 from wedgesweep.systems.suspension.newton import Accelerations
 from wedgesweep.systems.suspension.unilateral import contacts, impact
@@ -365,7 +366,7 @@ def _after_slip(t, y, mode, place, p):
 def transition(t, y, mode, place, p):
     """State and mode after an event, and whether they are unique (if not: locked)."""
     if place in (TRAVEL, TRAVEL + 1):
-        return y, with_segment(mode, travel.next_segment(mode.segment, place % 2, p)), True
+        return y, replaced(mode, SEGMENT, travel.next_segment(mode.segment, place % 2, p)), True
     if place in (COLUMN_CLOSES, BOLSTER_CLOSES):
         after = impact.closing(y, mode, place, COLUMN_CLOSES, BOLSTER_CLOSES, p)
         found, certain = resolve(t, after.y, touching(after.y, p), mode.segment, p)
@@ -406,11 +407,7 @@ def _forces_and_power(t, y, mode, p):
     if stuck(mode, p):
         return nan, nan, 0.0
     if closed(mode):
-        if held(mode):
-            now, power, _ = filippov.filippov_forces(t, y, mode, p)
-            return now.column, now.bolster, power
-        now = newton.forces(t, y, mode, p)
-        return now.column, now.bolster, energy.friction_power(t, y, mode, now, p)
+        return forces_and_power(t, y, mode, p)
     _, reactions, _ = _motion_and_reactions(t, y, mode, p)
     motion = velocities(y, p)
     power = reactions.column_friction * motion.along + reactions.bolster_friction * bolster_slip(motion, p)

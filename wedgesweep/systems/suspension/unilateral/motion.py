@@ -14,9 +14,10 @@ from typing import Any
 from numba.core import types
 
 from wedgesweep.compiled import by_type, contracted_of, inlined
-from wedgesweep.effects import fixture_resonance, guide_friction, hooks, lift_off, states, travel
+from wedgesweep.effects import fixture_resonance, lift_off, states
 from wedgesweep.excitation import acceleration
 from wedgesweep.systems.suspension.modes import VELOCITY, X
+from wedgesweep.systems.suspension.newton import applied_forces
 from wedgesweep.systems.suspension.unilateral.contacts import Motion
 
 UNILATERAL = lift_off.NAME
@@ -72,11 +73,8 @@ def free_accelerations(t, y, segment, guide, p):
 
     ``segment`` of the travel of the bolster, and its slip branch in the ``guide``.
     """
-    s, g, z, velocity = p.suspension, p.geometry, p.geometry.rest + y[X], y[VELOCITY]
-    wedge = s.wedge_preload - s.wedge_spring * wedge_rise(y, p) - s.wedge_mass * s.gravity
-    bolster = hooks.force_on_mass(z, velocity, y, p) + hooks.damping(velocity, y, p)
-    bolster += travel.force(y[X], segment, s.bolster_spring, p) + guide_friction.force(velocity, guide, p)
-    bolster -= s.bolster_spring * z + s.bolster_mass * s.gravity
+    s, g = p.suspension, p.geometry
+    wedge, bolster = applied_forces(wedge_rise(y, p), y, segment, guide, p)
     frame = acceleration(t, p)
     if fixture_resonance.acts(p):
         # All forces but that of the table act between the side frame and what it carries.
