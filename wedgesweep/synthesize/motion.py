@@ -11,9 +11,8 @@ from math import ceil, exp, pi
 import numpy as np
 
 from wedgesweep.solvers import periodic, radau
-from wedgesweep.solvers.radau_system import scales
 from wedgesweep.solvers.trajectory import TimedWindow
-from wedgesweep.systems import compact
+from wedgesweep.systems import compact, state_count
 
 RTOL = 1e-8
 # Settling ends when a period changes the state by less than this share of the input.
@@ -118,7 +117,7 @@ def _steady_state(record: np.ndarray) -> Sequence[float]:
     found = periodic.respond(record, periodic.at_rest(1), STEADY, 64, 1)
     if found.outcome[0] != periodic.OK or found.warm.period[0] != 1:
         return (0.0, 0.0)
-    return found.warm.state[0, : len(scales(compact(record))[0])].tolist()
+    return found.warm.state[0, : state_count(compact(record))].tolist()
 
 
 def sines(waves: Iterable[tuple[float, float, float]], time: np.ndarray, order: int) -> np.ndarray:
