@@ -49,6 +49,7 @@ def test_right_results_pass(here, kind):
     assert "differ by more" not in told
 
 
+@pytest.mark.acceptance
 def test_states_of_effects_are_begun_in_as_well(here):
     text = CASES.replace('["coulomb", "exponential"]', '"static-dynamic"').replace("[0.4, 1.1]", "1.1")
     told = run(SOLVERS["steady"], "--verify", 1, cases=BRISTLES + text)
