@@ -59,6 +59,17 @@ def test_samples_are_where_they_were_taken(tmp_path, stamps, sampled, words):
     assert any(words in remark for remark in test.remarks), test.remarks
 
 
+def test_a_rate_that_drifts_slowly_is_followed_whatever_the_noise(tmp_path):
+    """Neighbours are as smooth over one clock as over the other; the motion as a whole is not."""
+    stamps = EVEN + 6e-4 * EVEN * (1.0 - EVEN)
+    for seed in range(4):
+        noise = np.random.default_rng(seed).normal(0.0, [[0.05], [5.0]], (2, 1000))
+        test = read(tmp_path, rows_of(stamps, *(np.array(at(stamps)) + noise)))
+        assert any("interpolated evenly" in remark for remark in test.remarks)
+        left = test.displacement - true_signal(test.time)
+        assert left.std() < 1.1 * 0.05e-3
+
+
 def test_a_pause_ends_the_part_that_is_used(tmp_path):
     kept = (EVEN < 0.3) | (EVEN > 0.36)
     test = read(tmp_path, rows_of(EVEN[kept], *at(EVEN[kept])))

@@ -20,6 +20,9 @@ HALF_WAY = 0.14
 COARSE = 0.5
 # Relative error of a rate (the rounding of n stamps over their span and the root of n) that is too large.
 UNCERTAIN = 1e-3
+# Roughness over the stamps, over that at even times, up to which the samples do not tell which is right. The
+# stamps are followed there: a slow drift of the rate leaves 1.00001, stamps late by 3 % of a step 1.1.
+ALIKE = 1.02
 # Even samples per sample of the file: more are a fault of the stamps.
 MOST = 4
 # Place between two samples, from 0 at one of them to 1 half way, below which it is one of them.
@@ -158,7 +161,7 @@ def _placed(signals: Sequence[Signal], remarks: list[str]) -> _Placed:
     # Nothing tells how many samples there would be in a pause.
     regular = clock if clock.even or clock.gaps.any() else counted_clock(signal.time, signal.resolution)
     rough = [(roughness(signal.time, s.samples), roughness(regular.places, s.samples)) for s in signals]
-    followed = prod(stamps / max(even, TINY) for stamps, even in rough) <= 1.0
+    followed = prod(stamps / max(even, TINY) for stamps, even in rough) <= ALIKE
     if followed or (regular is clock and not clock.even):
         remarks.append(f"{scatter} of {1.0 / clock.step:.6g} Hz")
         return _with_losses(_Placed(signal, clock, signal.time), remarks)

@@ -5,6 +5,7 @@ event functions are compiled; what remains is scipy's. Two systems take turns in
 joints can open, as in period_map.py.
 """
 
+from cmath import isfinite
 from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -47,8 +48,25 @@ def inverse(matrix: np.ndarray) -> np.ndarray:
     return np.array([[d, -b], [-c, a]]) / (a * d - b * c)
 
 
-class SmallRadau(Radau):
-    """scipy's Radau with the linear algebra of a 2 x 2 system.
+class StrictRadau(Radau):
+    """scipy's Radau that rejects a step whose error cannot be estimated.
+
+    To estimate it once more, scipy takes the rate at the state less its error. There a wedge may lock, so
+    that no rate exists: scipy raises ValueError, and would accept the step if it did not check.
+    """
+
+    def __init__(self, *arguments: Any, **options: Any) -> None:
+        super().__init__(*arguments, **options)
+        self.solve, self.solve_lu = self.solve_lu, self._solved
+
+    def _solved(self, factors: Any, right: np.ndarray) -> np.ndarray:
+        # A list is quicker than numpy for a few numbers.
+        known = all(map(isfinite, right.tolist()))
+        return self.solve(factors, right) if known else np.full_like(right, np.inf)
+
+
+class SmallRadau(StrictRadau):
+    """The same with the linear algebra of a 2 x 2 system.
 
     LAPACK's wrappers take a third of the time of a case; an explicit inverse gives the same Newton
     iteration.
@@ -56,8 +74,7 @@ class SmallRadau(Radau):
 
     def __init__(self, *arguments: Any, **options: Any) -> None:
         super().__init__(*arguments, **options)
-        self.lu = self._inverse
-        self.solve_lu = np.dot
+        self.lu, self.solve = self._inverse, np.dot
 
     def _inverse(self, matrix: np.ndarray) -> np.ndarray:
         self.nlu += 1
@@ -221,7 +238,7 @@ class _Run:
             self._rate(mode),
             (t, stop),
             y,
-            method=SmallRadau if y.size == 2 else Radau,
+            method=SmallRadau if y.size == 2 else StrictRadau,
             jac=self._jacobian(mode),
             events=[*(self._event(t, mode, place) for place in places), _turn],
             dense_output=at_rest or t >= self.window.keep,
