@@ -36,7 +36,7 @@ SETTLING = 2.5
 JUMP = 6.0
 # Beyond so many standard deviations a value is an outlier, which is found in so many rounds.
 OUTLIER, CLIPPINGS = 4.0, 4
-# Share of a record that must be free of outliers and their neighbours for the latter to be left out.
+# Share of a record, or of its bins, that must be left without outliers and their neighbours.
 LEAST_KEPT = 0.25
 # Ends of a 95 % interval in standard deviations, and the median of the absolute value of a normal variable.
 TWO_SIDED, MEDIAN = float(ndtri(0.975)), float(ndtri(0.75))

@@ -11,13 +11,11 @@ from scipy.special import gammaln, logsumexp, xlogy
 
 from wedgesweep.diagnose.evaluation import Point
 from wedgesweep.diagnose.steady.harmonic_fit import BAND, REMOVED, regressors, resolvable, within_band
-from wedgesweep.diagnose.steady.spectra import Spectrum
+from wedgesweep.diagnose.steady.spectra import FALSE_ALARM, Spectrum
 
 # The effect that makes one, and its number that the records tell directly.
 TONE = "stray_vibration"
 TONE_FREQUENCY = f"{TONE}.frequency_hz"
-# Probability of a false alarm in noise.
-FALSE_ALARM = 1e-4
 # Grid points per resolution of the longest record.
 FINE = 4
 # Lowest frequency (Hz) that is searched on a rig like the bench: anything slower is drift.
