@@ -51,21 +51,6 @@ def test_what_was_planted_is_found(size, shape, seen):
     assert found == pytest.approx(size / np.hypot(1.0, size) * np.sqrt(seen * 378.0 / 446.0), rel=0.04)
 
 
-def test_units_do_not_matter():
-    data = planted(0.02, np.ones(16))
-    here = as_it_is(data)
-    factor = np.array([36.0, 6.0])[:, None]
-    spectra = tuple(
-        replace(each, mean=factor * each.mean, variance=factor**2 * each.variance) for each in data.spectra
-    )
-    larger = replace(data, spectra=spectra)
-    response = here.response._replace(harmonics=factor * here.response.harmonics)
-    again = larger.compared_again(replace(here, response=response))
-    assert again.chi2 == pytest.approx(here.chi2, rel=1e-9)
-    sizes = [accuracy.of_response(*each, 378) for each in ((data, here), (larger, again))]
-    assert sizes[0] == pytest.approx(sizes[1], rel=1e-9)
-
-
 def test_no_model_error_is_noise_alone():
     """Bit for bit, with coherent channels too."""
     data = drawn(LAG)

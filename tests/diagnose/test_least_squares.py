@@ -21,14 +21,6 @@ def test_clean_data_leave_chi_squared():
     assert max(np.abs(excess)) < 4.0
 
 
-def test_a_right_fit_leaves_chi_squared_and_finds_the_number():
-    _, base, (lag,) = searched(drawn(LAG), "velocity_lag")
-    assert base.fit.excess > 800.0
-    assert lag.fit.p > 1e-3
-    error = lag.fit.x[0] - 3e-4
-    assert abs(error) < 4.0 * np.sqrt(lag.fit.covariance[0, 0])
-
-
 def test_intervals_cover_the_truth():
     pulls = []
     for seed in range(15):

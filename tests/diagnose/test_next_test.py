@@ -11,7 +11,6 @@ from wedgesweep.diagnose.fit_parameters import Hypothesis
 from wedgesweep.diagnose.model import Fit, Model
 from wedgesweep.diagnose.next_test.designs import offered
 from wedgesweep.diagnose.next_test.offer import SEPARATED, choice
-from wedgesweep.diagnose.next_test.recommend import recommend
 from wedgesweep.diagnose.next_test.steady import ACCELERATIONS, FREQUENCIES
 from wedgesweep.diagnose.steady import simulation
 from wedgesweep.solvers.periodic import at_rest
@@ -61,10 +60,6 @@ def test_a_suspect_whose_wedge_locks_is_not_in_the_way(suspects):
     assert not any(fit is locking for fit in offered(steady_tests(suspects), [*suspects, locking]).fits)
     assert steady_test([*suspects, locking]) == steady_test(suspects)
     assert steady_test([suspects[0], locking]) is None
-
-
-def test_one_suspect_needs_no_test(suspects):
-    assert recommend(suspects[:1]) is None
 
 
 def test_the_cheapest_test_is_chosen_that_would_do_with_a_neighbour_s_amplitude():

@@ -180,19 +180,6 @@ def test_some_of_the_tests_are_compared_as_before():
     np.testing.assert_allclose(some.chi2_by_test, all_tests.chi2_by_test[rows], rtol=1e-6)
 
 
-def test_bootstrap_samples_have_inputs_with_harmonics():
-    data = with_uncertain_harmonics(distorted(0.0), STD)
-    truth = Model(data, Hypothesis(())).evaluate(stated(data).point)
-    rng, squares, bare = np.random.default_rng(5), [], []
-    for _ in range(100):
-        sample = data.bootstrap_sample(truth, rng)
-        squares.append(sample.compared_again(truth).chi2)
-        bare.append(sample.bare().compared_again(truth).chi2)
-    expected = data.dof.sum()
-    assert np.mean(squares) == pytest.approx(expected, abs=4.0 * np.sqrt(2.0 * expected / 100))
-    assert np.mean(bare) > 5.0 * expected
-
-
 # A third harmonic meets the resonance at 13.6 Hz.
 EFFECTS = ("input_distortion", "viscous_damping", "displacement_gain")
 

@@ -183,9 +183,3 @@ def test_a_killed_diagnosis_leaves_a_ladder(tmp_path):
     result = diagnosis_result.read(found)
     assert [len(each["effects"]) for each in result.document["ladder"]][:2] == [0, 1]
     assert {each["reason"] for each in result.document["unfinished"]} == {"not reached"}
-
-
-def test_the_result_of_the_api_is_that_of_the_time_limit(bench):
-    found = api.diagnose_measurement(bench, effects=CANDIDATES, n_jobs=1, time_limit_s=1e-3)
-    assert found.document["ended"] == {"by": "time limit", "signal": None}
-    assert [each["effects"] for each in found.document["ladder"]] == [[]]
