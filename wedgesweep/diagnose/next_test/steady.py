@@ -6,7 +6,8 @@ from math import nan, pi, sqrt
 
 import numpy as np
 
-from wedgesweep.diagnose.evaluation import Point
+from wedgesweep.diagnose.evaluation import Point, Scenario
+from wedgesweep.diagnose.fit_data import INPUT_GAIN
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.next_test.designs import Design
 from wedgesweep.diagnose.next_test.sensors import Sensors
@@ -38,6 +39,10 @@ class SineTests(HarmonicData):
 
     def has_tone(self, effects: Iterable[str]) -> bool:
         return self.foreign_tone is not None and TONE in {*acting(self.model.effects), *effects}
+
+    def records(self, scenario: Scenario) -> np.ndarray:
+        values = {name: each for name, each in scenario.values.items() if name != INPUT_GAIN}
+        return super().records(scenario._replace(values=values))
 
     def _respond(
         self, rows: np.ndarray, phase: np.ndarray | None, warm: Warm, tolerance: float

@@ -13,7 +13,7 @@ import numpy as np
 
 from wedgesweep.diagnose.changes import SLIGHT
 from wedgesweep.diagnose.evaluation import Comparison, Evaluation, NuisanceParameter, Point, Scenario
-from wedgesweep.diagnose.fit_data import INPUT_GAIN, Arrays, FitData, Motion
+from wedgesweep.diagnose.fit_data import Arrays, FitData, Motion
 from wedgesweep.diagnose.model import Fit, Model
 from wedgesweep.diagnose.next_test.sensors import Sensors
 from wedgesweep.diagnose.noise_spectrum import NoiseSpectrum
@@ -126,13 +126,12 @@ class HarmonicData(WhitenedHarmonics, FitData):
         return stated, at_rest(self.tests)
 
     def records(self, scenario: Scenario) -> np.ndarray:
-        """Parameter records (T,) of the tests in a scenario; the gain of inputs is part of ``inputs_of``."""
+        """Parameter records (T,) of the tests in a scenario."""
         amplitudes = self.inputs_of(scenario)
-        values = {name: each for name, each in scenario.values.items() if name != INPUT_GAIN}
         if self.models is None:
-            return simulation.records(self.model, self.law, values, self.omega, amplitudes)
+            return simulation.records(self.model, self.law, scenario.values, self.omega, amplitudes)
         each = [
-            simulation.records(model, self.law, values, self.omega[t : t + 1], amplitudes[t : t + 1])
+            simulation.records(model, self.law, scenario.values, self.omega[t : t + 1], amplitudes[t : t + 1])
             for t, model in enumerate(self.models)
         ]
         return stacked(each)

@@ -118,8 +118,10 @@ class RecordedInputData(HarmonicData):
         return tuple(name for name in effects if name in shown and name not in self.hidden)
 
     def records(self, scenario: Scenario) -> np.ndarray:
-        shown = {name: each for name, each in scenario.values.items() if name not in self.hidden}
+        left_out = (*self.hidden, INPUT_GAIN)
+        shown = {name: each for name, each in scenario.values.items() if name not in left_out}
         rows = super().records(scenario._replace(values=shown))
+        rows["input"]["amplitude"] = self.inputs_of(scenario)
         for sensor, number, neutral in SENSORS:
             if sensor in self.hidden:
                 rows[sensor][number] = neutral
