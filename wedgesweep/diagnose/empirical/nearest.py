@@ -51,10 +51,16 @@ def nearest(found: ForceMap) -> list[Nearest]:
     about = draws * np.sqrt(np.maximum(values, 0.0)) @ vectors.T
     forces = weight * np.concatenate([found.force.ravel()[None], found.force.ravel() + about])
     forces = _without(forces, weight)
+    scatter = forces[1:] - forces[0]
+    # Errors add to the power of the force, and those of a draw once more.
+    errors = np.r_[1.0, np.full(DRAWS, 2.0)]
+    power = (forces**2).sum(axis=1) - errors * (scatter**2).sum(axis=1).mean()
     rows = []
     for name, form in FORMS.items():
         shape = _without((weight * form(z, v).ravel())[None], weight)[0]
-        shares = (forces @ shape) ** 2 / ((forces**2).sum(axis=1) * (shape @ shape))
+        along = (forces @ shape) ** 2 - errors * ((scatter @ shape) ** 2).mean()
+        shares = np.divide(along, power * (shape @ shape), out=np.zeros_like(along), where=power > 0.0)
+        shares = np.clip(shares, 0.0, 1.0)
         low, high = np.quantile(shares[1:], [0.025, 0.975])
         rows.append(Nearest(name, float(shares[0]), (float(low), float(high))))
     return sorted((each for each in rows if each.share >= LEAST_SHARE), key=lambda each: -each.share)
