@@ -3,8 +3,10 @@
 Compiled once for each type of record, as solvers compile them.
 """
 
+from inspect import signature
+
 from wedgesweep import friction
-from wedgesweep.compiled import compiled
+from wedgesweep.compiled import compiled, function_of
 from wedgesweep.effects import states
 from wedgesweep.hybrid.state import NO_EVENT, State
 from wedgesweep.hybrid.step import dense_output
@@ -45,64 +47,31 @@ def owned(y, p):
     return by_owner
 
 
-@compiled
-def initial_mode(t, y, p):
-    """Mode at the start of a run, and whether it is unique."""
-    return transitions.initial_mode(t, y, p)
+def exposed(inner):
+    """A function of compiled code as Python calls it."""
+    arguments = list(signature(inner.py_func).parameters)
+    function = function_of(arguments, f"inner({', '.join(arguments)})", inner=inner)
+    # Kept code is found by these.
+    function.__module__, function.__qualname__ = __name__, f"{inner.py_func.__module__}.{inner.__name__}"
+    return compiled(function)
 
 
-@compiled
-def rate(t, y, mode, p):
-    """dy/dt, a tuple, and the forces."""
-    return transitions.rate(t, y, mode, p)
-
-
-@compiled
-def resolve_mode(t, y, mode, p):
-    """Mode with the signs of its normal forces, the forces, and whether they are unique."""
-    return filippov.resolve_mode(t, y, mode, p)
-
-
-@compiled
-def contact_forces(t, y, mode, p):
-    """Forces on any mode but a stuck one."""
-    return filippov.forces_of_mode(t, y, mode, p)
-
-
-@compiled
-def reactions(load, mu, p):
-    """Forces under loads and coefficients of friction, and the determinant of their equations."""
-    return newton.reactions(load, mu, p)
-
-
-@compiled
-def loaded_reactions(load, column_mu, bolster_mu, p):
-    """The same with coefficients that depend on the load."""
-    return newton._loaded_reactions(load, column_mu, bolster_mu, p)
-
-
-@compiled
-def breakaway(t, y, direction, segment, p):
-    """Acceleration z'' (m/s^2) if set-valued friction let go in a direction."""
-    return set_valued.acceleration_on_breakaway(t, y, direction, segment, p)
-
-
-@compiled
-def growth(by_state, p):
-    """Rate (1/s) at which velocities run away."""
-    return stiffness.growth(by_state, p)
+initial_mode = exposed(transitions.initial_mode)
+rate = exposed(transitions.rate)
+resolve_mode = exposed(filippov.resolve_mode)
+contact_forces = exposed(filippov.forces_of_mode)
+reactions = exposed(newton.reactions)
+loaded_reactions = exposed(newton._loaded_reactions)
+breakaway = exposed(set_valued.acceleration_on_breakaway)
+growth = exposed(stiffness.growth)
+branch_at = exposed(friction.branch_at)
+detected_period = exposed(period_detection.detected_period)
 
 
 @compiled
 def coefficient(velocity, branch, y, p):
     """Signed coefficient of the law on a branch."""
     return friction.coefficient(velocity, branch, friction.static(0, y, p), p)
-
-
-@compiled
-def branch_at(speed, p):
-    """Branch of a regularised law."""
-    return friction.branch_at(speed, p)
 
 
 @compiled
@@ -117,12 +86,6 @@ def implicit_step(t, h, y, mode, p, rtol):
     """State at the end of an implicit step and in its middle, and the error over the tolerance."""
     made, _, _, error = implicit.step(t, h, y, transitions.rate(t, y, mode, p)[0], mode, p, rtol)
     return made.end, dense_output(0.5, made), error
-
-
-@compiled
-def detected_period(distances, tolerance):
-    """Periods after which a state came back."""
-    return period_detection.detected_period(distances, tolerance)
 
 
 @compiled

@@ -91,17 +91,6 @@ def test_short_bristles_are_friction_that_holds_but_for_the_time_of_their_way():
     assert apart[0] / apart[1] == pytest.approx(2.0, rel=0.01)
 
 
-@pytest.mark.acceptance
-def test_long_steps_on_a_steep_ramp_end_where_short_ones_do():
-    steep = record("coulomb")
-    start = moving(steep)
-    ends = []
-    for step, steps in ((mechanics.explicit_step, 4000), (mechanics.implicit_step, 40)):
-        end = mechanics.owned(after(step, steep, start, 2e-4, steps)[0], steep[0])
-        ends.append([*end[""], *end[COLUMN]])
-    assert ends[1] == pytest.approx(ends[0], rel=1e-3, abs=1e-12)
-
-
 def test_what_runs_away_is_not_stepped_over():
     p = record()[0]
     velocities = np.flatnonzero(moving(record(), mass=1.0, column=1.0))

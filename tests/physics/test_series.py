@@ -1,15 +1,13 @@
 """Base motion as a Fourier series: what a recorded input becomes."""
 
-from math import inf, pi
+from math import pi
 
 import numpy as np
-import pytest
 
 from tests.physics.cases import OMEGA_N
 from wedgesweep import excitation
 from wedgesweep.compiled import compiled
-from wedgesweep.solvers import event_driven, periodic, radau
-from wedgesweep.solvers.trajectory import Window
+from wedgesweep.solvers import periodic
 from wedgesweep.systems.suspension import parameters
 
 SECOND, PHASE, THIRD, THIRD_PHASE = 0.1, 0.5, 0.05, 0.5 * pi
@@ -68,17 +66,6 @@ def test_the_same_harmonics_as_an_effect_give_the_same_response():
     there, here = steady(as_effect), steady(case())
     assert np.abs(here - there).max() < 1e-9 * np.abs(there).max()
     assert np.abs(here - steady(case(excitation.SINE))).max() > 0.1 * np.abs(there).max()
-
-
-@pytest.mark.acceptance
-def test_both_solvers_agree_under_set_valued_friction():
-    record = case(law="coulomb")
-    window = Window(0.5 * OMEGA_N, 20, 2, 128)
-    one = event_driven.solve(record, window, 1e-9, inf).samples
-    other = radau.solve(record, window, 1e-9, inf).samples
-    assert one.sticks.any()
-    assert not one.sticks.all()
-    assert np.abs(one.x - other.x).max() < 1e-6 * np.ptp(one.x)
 
 
 def test_noise_in_high_orders_needs_no_short_steps():
