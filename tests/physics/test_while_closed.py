@@ -18,11 +18,7 @@ from wedgesweep.systems import compact, example, opens, while_closed
 from wedgesweep.systems.suspension import parameters
 
 RTOL, PERIODS = 1e-9, 3
-EFFECTS = {
-    "viscous_damping": {"coefficient": 8.0},
-    "stribeck": {"velocity": 5e-3, "peak": 0.05},
-    "fixture_resonance": {"frequency": 40.0, "damping_ratio": 0.05},
-}
+EFFECTS = {"viscous_damping": {"coefficient": 8.0}, "stribeck": {"velocity": 5e-3, "peak": 0.05}}
 STOP = {"end_stop": {"clearance": 2e-4, "stiffness": 2e4}, "input_distortion": {"second": 0.1}}
 
 
