@@ -87,7 +87,9 @@ def test_faults_are_seen(tmp_path, monkeypatch, fails, outcome):
     assert judge(["check", "c.toml"], limit).outcome == outcome
 
 
-@pytest.mark.parametrize("said", ["title: nan", "versions: numba inf", "-inf   20   0.3"])
+@pytest.mark.parametrize(
+    "said", ["title: nan", "versions: numba inf", "-inf   20   0.3", 'unit "-inf= -inf"']
+)
 def test_a_name_is_no_number(tmp_path, monkeypatch, said):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "c.toml").write_text(CONFIG)

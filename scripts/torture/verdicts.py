@@ -20,8 +20,10 @@ TRACEBACK, HANG, WARNING, NOT_FINITE, NAMELESS, CODE = FAULTS = (
 # Processor time (s) that an input may take.
 LIMIT = 20.0
 NUMBERLESS = re.compile(r"(?<![\w.'\"])[-+]?(?:nan|inf|infinity)(?![\w'\"])", re.IGNORECASE)
-# What an input calls itself: lines on its origin, and the first word of a row of a table.
-NAMES = re.compile(r"^(?:(?:title|started|model|versions|cannot be resumed): .*$|\S+)", re.MULTILINE)
+# What an input calls itself: lines on its origin, the first word of a row of a table, and quoted texts.
+NAMES = re.compile(
+    r"\"[^\"\n]*\"|^(?:(?:title|started|model|versions|cannot be resumed): .*$|\S+)", re.MULTILINE
+)
 # What a message names: a file of the directory, or an option or argument of the command.
 OPTION = re.compile(r"--?\w|'?[A-Z_]{3,}'?|Usage:|argument")
 

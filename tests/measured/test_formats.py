@@ -1,6 +1,7 @@
 """The same vibration in every form that people have it in is the same record, and its form is told."""
 
 import sys
+from zipfile import ZipFile
 
 import numpy as np
 import pytest
@@ -254,6 +255,19 @@ def test_columns_of_a_workbook_by_letter_and_sheet(tmp_path, plain):
     sheet = [(f'"{name}"', f'"Run 2!{letter}"') for name, letter in zip("tdv", "BCD", strict=True)]
     found = read_with(tmp_path, ("one.csv", "one.xlsx"), *sheet)
     np.testing.assert_allclose(found.displacement, plain.displacement, rtol=1e-5)
+
+
+def test_what_a_library_warns_of_is_not_printed(tmp_path):
+    """Its warnings are errors here, as they are to the fuzz."""
+    fixture_formats.xlsx(tmp_path / "whole.xlsx", dict(zip("tdv", vibration(), strict=True)))
+    with ZipFile(tmp_path / "whole.xlsx") as whole, ZipFile(tmp_path / "one.xlsx", "w") as damaged:
+        for name in whole.namelist():
+            content = whole.read(name)
+            damaged.writestr(
+                name, content.replace(b" Id=", b" Jd=") if name.endswith("book.xml.rels") else content
+            )
+    with pytest.raises(measured.MeasuredError, match=r"one\.xlsx: cannot be read \('rId"):
+        read_with(tmp_path, ("one.csv", "one.xlsx"))
 
 
 @pytest.mark.parametrize(

@@ -1,5 +1,6 @@
 """Reads files of many formats: each reader turns one into named channels, with unit and clock."""
 
+import warnings
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -45,9 +46,14 @@ def read(path: Path, names: Sequence[Name], stated: Mapping[str, Any] | None = N
 
 
 def stored(path: Path, reading: Callable[[], Any]) -> Any:
-    """What a binary file holds; raises ReadError for all that its library may raise."""
+    """What a binary file holds; raises ReadError for all that its library may raise.
+
+    Of a damaged file it may warn as well, which a reader has no use for.
+    """
     try:
-        return reading()
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            return reading()
     except ReadError as error:
         raise ReadError([f"{path}: {problem}" for problem in error.problems]) from error
     except OSError as error:
