@@ -7,7 +7,7 @@ import pytest
 from validation import hiding, judge, ranges, response, rigs, run, sets, strength
 from validation.__main__ import main
 from validation.judge import Share
-from validation.time_records import TIME_KINDS
+from validation.time_records import TESTS
 
 from tests.measured.test_steadiness import UNSTEADY, only_fault, written
 from wedgesweep.effects import EFFECTS, candidates
@@ -172,7 +172,7 @@ def test_a_test_that_check_refuses_as_not_steady_gets_more_input(tmp_path):
     [
         (107, RECORDS, IDEAL),
         (107, RIGS_RECORDS, RIGS),
-        (107, TIME_RECORDS, TIME_KINDS),
+        (107, TIME_RECORDS, tuple(TESTS)),
     ],
     ids=["bench", "rigs", "time"],
 )

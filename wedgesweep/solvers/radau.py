@@ -57,7 +57,8 @@ class StrictRadau(Radau):
 
     def __init__(self, *arguments: Any, **options: Any) -> None:
         super().__init__(*arguments, **options)
-        self.solve, self.solve_lu = self.solve_lu, self._solved
+        self.solve: Any = self.solve_lu  # type: ignore[has-type]
+        self.solve_lu = self._solved
 
     def _solved(self, factors: Any, right: np.ndarray) -> np.ndarray:
         # A list is quicker than numpy for a few numbers.
