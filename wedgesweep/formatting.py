@@ -37,7 +37,7 @@ def number(value: float | None, digits: int = 3) -> str:
 
 
 def short(value: float | None, digits: int = 4) -> str:
-    """Write a number with at most so many digits and no trailing zeros: 24, 0.1, 14.67."""
+    """Write a number with at most ``digits`` digits and no trailing zeros: 24, 0.1, 14.67."""
     text = number(value, digits)
     return text.rstrip("0").rstrip(".") if "." in text and "×" not in text else text
 
@@ -62,12 +62,12 @@ def power(exponent: int) -> str:
 
 
 def fixed(value: float, places: int) -> str:
-    """Write a number with so many decimals, thousands apart."""
+    """Write a number with ``places`` decimals, thousands apart."""
     return f"{value:,.{places}f}".replace(",", "\N{NARROW NO-BREAK SPACE}")
 
 
 def decimals(value: float, digits: int) -> int:
-    """Count the decimals that give a number other than 0 at least so many significant digits."""
+    """Count the decimals that give a number other than 0 at least ``digits`` significant digits."""
     return max(digits - 1 - floor(log10(abs(value))), 0)
 
 

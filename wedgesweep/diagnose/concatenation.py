@@ -30,8 +30,8 @@ from wedgesweep.natural_units import NaturalUnits
 class Layout(NamedTuple):
     """Number of ``tests`` of each part, and its nuisance parameters among all.
 
-    ``columns``: those of each part, of which the first so many as its ``priors`` have a prior; ``size``:
-    numbers P and N of all parts.
+    ``columns``: columns of each part, the ones with a prior first (as many as its ``priors``);
+    ``size``: numbers P and N of all parts.
     """
 
     tests: tuple[int, ...]

@@ -23,7 +23,7 @@ LOCAL_STEP = 0.3
 RESAMPLED, FEWEST = 2000, 8
 # Bootstrap samples with less than this share of the excess do not count: there is nothing to be removed.
 SHOWS = 0.1
-# A parameter is undetermined if its standard deviation is more than so many of its scales.
+# A parameter is undetermined if its standard deviation exceeds VAGUE times its scale.
 VAGUE = 3.0
 
 # Maps a function over a list, perhaps in threads.

@@ -37,7 +37,7 @@ from wedgesweep.measured.declarations import LOOP, STEADY, TRANSIENT
 log = logging.getLogger(__name__)
 # Explanations that a next test should separate where the verdict abstains.
 COMPARED = 6
-# Explanations are close if their penalised chi-squared is within so many times the gap of a tie of the best.
+# Explanations are close if their penalised chi-squared is within FOLLOWED_GAPS gaps of a tie of the best.
 FOLLOWED_GAPS = 5.0
 # Verdicts after which more is tried than names.
 ABSTAINING = (verdict.NONE, verdict.INSUFFICIENT)

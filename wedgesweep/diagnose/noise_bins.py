@@ -41,8 +41,8 @@ BANDS, STEEP = 2, 12.0
 # Least number of bins that count as noise, which are at least LEAST_KEPT of those above the motion.
 FEWEST = 8
 # A record is divided into PARTS. Those at its end, or beginning, whose rms is at most ALIKE times the least
-# one are quiet if there are at least so many of them, with at most this share of the record's rms, and with
-# at least so many samples.
+# one are quiet if there are at least QUIET_PARTS of them, with at most QUIET_SHARE of the record's rms, and
+# with at least QUIET_SAMPLES samples.
 PARTS, ALIKE, QUIET_PARTS, QUIET_SHARE, QUIET_SAMPLES = 8, 2.0, 2, 0.1, 64
 
 

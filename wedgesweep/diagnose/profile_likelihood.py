@@ -26,8 +26,8 @@ FURTHER = 3.0
 ITERATIONS = 10
 # Number of values at which the parameter of a switch is held, from the end by the curvature to the bound.
 VALUES = 6
-# No further value is tried once chi-squared has risen by so many times RISE. Other minima further away are no
-# part of the interval; the scan over the whole range has looked there (search.single_fit).
+# No further value is tried once chi-squared has risen by FAR_BEYOND times RISE. Other minima further away are
+# no part of the interval; the scan over the whole range has looked there (search.single_fit).
 FAR_BEYOND = 10.0
 # A fit whose chi-squared is lower by this much becomes the new centre, at most this many times.
 LOWER, RESTARTS = 0.5, 6
@@ -163,7 +163,7 @@ def _end_beyond_ridges(fit: Fit, parameter: int, side: float, furthest: float, n
 
 
 def _held(fit: Fit, start: Fit, parameter: int, off: float) -> Fit:
-    """Fit with one parameter held so many standard deviations off where ``fit`` has it.
+    """Fit with one parameter held ``off`` standard deviations from where ``fit`` has it.
 
     The others begin where the covariance of ``fit`` predicts them, extrapolated from the fit ``start``.
     """

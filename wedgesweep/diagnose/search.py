@@ -43,16 +43,16 @@ SHORT_SCHEDULE = (Round(1, 3),)
 BASE_SCHEDULE = (Round(None, 4), Round(3, 6))
 # An effect is dropped after the first round if its misfit is this many times the base model's.
 CUT_OFF = 100.0
-# A fit is far off if it leaves so many times the squared noise in half of the tests.
+# A fit is far off if it leaves FAR times the squared noise in half of the tests.
 FAR = 100.0
-# So many of the best single effects, of pairs and of all explanations are looked at again.
+# Number of best single effects, of best pairs and of best explanations that are looked at again.
 LEADING = 8
 # A fit explains something, or is far better, if it leaves less than this share of another one's chi-squared.
 NOTABLE = 0.9
 # A test fits markedly better if its chi-squared is this much less.
 MARKED = 9.0
-# Work (see work.py) that a search may spend for each test, of which it counts at least so many, and the share
-# that pairs get even if unknown amplitudes made single effects expensive.
+# Work (see work.py) that a search may spend for each test, the least number of tests that it counts, and the
+# share that pairs get even if unknown amplitudes made single effects expensive.
 WORK_PER_TEST, FEWEST_COUNTED, PAIRS_SHARE = 1e5, 12, 1.0 / 3.0
 
 # Names of what may help a fit, in the order in which it is tried.

@@ -22,8 +22,8 @@ ORDER = 4
 # Noise of the displacement makes up at most this share of the force, by inertia, and of the velocity; the
 # cut-off is the highest one at which that holds, between LOWEST and HIGHEST of the sampling rate.
 NOISE_SHARE, LOWEST = 0.005, 1e-3
-# A line of a spectrum belongs to the motion if its power is so many times that of the noise; all lines but
-# for this share (rms) of the velocity pass.
+# A line of a spectrum belongs to the motion if its power is STANDS_OUT times the noise; a low-pass lets all
+# of them through but for NOT_PASSED of the velocity's rms.
 STANDS_OUT, NOT_PASSED = 10.0, 0.01
 # Mean power of a velocity in an octave, over that in the loudest one, that belongs to the motion for sure.
 LOUD = 0.1
@@ -32,9 +32,9 @@ LOUD = 0.1
 WIDER = 2.0
 # Part of a record at either end, in periods of the cut-off, in which the filter has not settled.
 SETTLING = 2.5
-# A step from one sample to the next is part of a jump if it is off by more than so many standard deviations.
+# A step from one sample to the next is part of a jump if it is off by more than JUMP standard deviations.
 JUMP = 6.0
-# Beyond so many standard deviations a value is an outlier, which is found in so many rounds.
+# Values beyond OUTLIER standard deviations are clipped, CLIPPINGS times.
 OUTLIER, CLIPPINGS = 4.0, 4
 # Share of a record, or of its bins, that must be left without outliers and their neighbours.
 LEAST_KEPT = 0.25

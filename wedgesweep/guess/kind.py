@@ -13,7 +13,7 @@ from wedgesweep.measured.stationarity import MOST_LEVEL_RATIO, MOST_MOVED, stati
 
 # What does not repeat, over what does, in a steady record; samples that tell it.
 NOISE, MOST = 0.5, 20_000
-# A pause parts two runs from so many steps of the clock on, if each has so many samples and such a share.
+# A pause of PAUSE steps of the clock parts two runs, if each has FEWEST samples and this SHARE of the record.
 PAUSE, FEWEST, SHARE = 20.0, 200, 0.1
 # Part of a free motion in which it must be at its largest, and share of the largest swing above which the
 # swing before that counts as a push.

@@ -27,7 +27,7 @@ ALIKE = 1.02
 MOST = 4
 # Place between two samples, from 0 at one of them to 1 half way, below which it is one of them.
 NONE, TINY = 1e-3, 1e-300
-# A signal sampled so many times as fast is low-passed (Butterworth) at EDGE of the slower Nyquist frequency.
+# A signal sampled FASTER times as fast is low-passed (Butterworth) at EDGE of the slower Nyquist frequency.
 FASTER, ORDER, EDGE = 2.0, 8, 0.8
 
 

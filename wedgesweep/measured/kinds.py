@@ -13,7 +13,7 @@ from wedgesweep.measured.measurement import TestRecord
 RETURNS = 0.1
 # Least swing in the first part of a free motion over that in the last one, and that part (share).
 DECAYS, PART = 1.2, 0.25
-# The same where the swing falls from each of so many parts to the next: noise and steady motions never do so.
+# The same where the swing falls from each of PARTS parts to the next: noise and steady motions never do so.
 DECAYS_SLOWLY, PARTS = 1.02, 8
 # Highest cut-off over the sampling rate: the motion of a loop is filtered at twice that.
 HIGHEST = 0.2

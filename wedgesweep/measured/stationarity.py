@@ -12,7 +12,7 @@ PARTS = 4
 MOST_LEVEL_RATIO = 1.5
 # Largest share of the power that may move to other frequencies between the halves of a record.
 MOST_MOVED = 0.5
-# One in so many samples holds less than this share of the power of a vibration.
+# Of a vibration the largest 1/FEW of the samples hold less than MUCH of the power.
 FEW, MUCH = 500, 0.2
 MEND = "cut the record to its steady part (from_s, to_s)"
 

@@ -10,7 +10,7 @@ from wedgesweep.report.html import Markup
 from wedgesweep.report.inline_figures import InlineFigures
 
 HEAD = ("effects", "explanation", "accuracy", "on held-out tests", "next best", "its accuracy")
-# A pair is mentioned beside its better component if it is so many times as accurate.
+# A pair is mentioned beside its better component if it is MUCH_BETTER times as accurate.
 MUCH_BETTER = 2.0
 READING = (
     "The accuracy is the smallest error of the model, as a share of the rms of the response, with which the "

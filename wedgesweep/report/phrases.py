@@ -82,7 +82,7 @@ def rounded(fitted: Mapping[str, Any]) -> Rounded | None:
 
 
 def _to_places(value: float, places: int) -> str:
-    """A number with so many decimals; one that they would round to 0 keeps one digit instead."""
+    """A number with ``places`` decimals; one that they would round to 0 keeps one digit instead."""
     vanishes = value != 0.0 and round(value, places) == 0.0
     return number(value, 1) if vanishes else fixed(value, places)
 

@@ -82,7 +82,7 @@ class Accuracy(NamedTuple):
     """When a response counts as steady.
 
     ``tolerance``: change of the state per repetition, over input amplitude and velocity; ``most_periods``:
-    without a repetition in so many the response counts as not periodic; ``rtol``: of a step.
+    a response without a repetition in that number is not periodic; ``rtol``: of a step.
     """
 
     tolerance: float

@@ -48,7 +48,7 @@ def jumps(force: np.ndarray) -> np.ndarray:
 
 
 def covariance(low_pass: LowPass, places: np.ndarray, std: float, derivatives: Derivatives) -> np.ndarray:
-    """Covariance of filtered forces, (L, k): of each with the one that follows so many later.
+    """Covariance of filtered forces at k lags, (L, k).
 
     Parameters
     ----------

@@ -24,7 +24,7 @@ from wedgesweep.effects import channel_delay, force_gain, merge
 from wedgesweep.errors import InputError
 from wedgesweep.solvers import imposed_motion
 
-# Below so many standard deviations of its noise the velocity has no sign. Where it stays there for more than
+# Below AT_REST standard deviations of its noise the velocity has no sign. Where it stays there for more than
 # one compared sample the mass may rest, and friction is not known.
 AT_REST = 3.0
 # The same over the largest velocity: however exact the displacement, a low-pass rings on after a stop.

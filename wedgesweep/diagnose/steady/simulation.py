@@ -60,7 +60,7 @@ def respond(rows: np.ndarray, warm: Warm, harmonics: int, tolerance: float = TOL
 
 
 def _count(rows: np.ndarray, periods: np.ndarray | int) -> None:
-    """Count the work of simulated cases (n,) over so many periods (n,)."""
+    """Count the work of simulated cases (n,) over a number of periods (n,)."""
     weight = np.where(systems.has_own_mechanics(rows), WORK_OF_OWN_MECHANICS, 1.0)
     weight *= np.where(has_series(rows), WORK_UNDER_SERIES, 1.0)
     work.add(float((WORK_OF_CASE + weight * periods).sum()))

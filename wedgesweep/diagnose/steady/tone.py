@@ -71,7 +71,7 @@ def find(spectra: Sequence[Spectrum], lowest: float = LOWEST) -> Tone | None:
 
 
 def _log_p_without_strongest(power: np.ndarray, count: np.ndarray, alike: np.ndarray) -> np.ndarray:
-    """Logarithm of the p-value (n,) of powers of so many channels (T, n), without the tests that show most.
+    """Logarithm of the p-value (n,) of powers of ``count`` channels (T, n), without the tests that show most.
 
     A tone also makes intermodulation lines with the harmonics of one response, and a response has
     sub-harmonics: only tests of the same frequency, ``alike`` (T, T), share them. What counts is what the

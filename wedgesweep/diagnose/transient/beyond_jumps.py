@@ -18,17 +18,17 @@ from wedgesweep.diagnose.trimmed_refit import MOST_LEFT_OUT
 # Distances, in units of the start, at which other starts are tried; numbers of directions, and of moves at
 # each distance.
 DISTANCES, DIRECTIONS, MOVES = (3e-2, 1e-2, 3e-3, 1e-3, 3e-4), 24, 4
-# Places may be farther apart than that: around the best of them larger distances come first, each so many
-# times the next one.
+# Places may be farther apart than that: around the best of them larger distances come first, each
+# REFINED times the next one.
 REFINED = 3.0
 # Places that are tried, as shares of their range.
 SHARES = np.linspace(-1.0, 1.0, 101)
 # A velocity below this, in units of the start, is that of a mass at rest.
 AT_REST = 0.05
-# A test stands out if its misfit, over the median of all tests, is so many standard deviations of noise too
-# large. At most MOST_LEFT_OUT of the tests can stand out: where most are wrong, the model is.
+# A test stands out if its misfit, over the median of all tests, is DEVIATIONS standard deviations of noise
+# too large. At most MOST_LEFT_OUT of the tests can stand out: where most are wrong, the model is.
 DEVIATIONS = 4.0
-# Where the median is so many times the squared noise the model is wrong, and tests differ anyway: then a test
+# Where the median is WRONG times the squared noise the model is wrong, and tests differ anyway: then a test
 # stands out if it has CLEARLY times the median.
 WRONG, CLEARLY = 10.0, 3.0
 

@@ -17,7 +17,7 @@ DESCRIPTION = "motion in time and the size of its swings, measured and simulated
 
 # Of a longer motion the beginning is drawn: more would run together.
 SWINGS = 40
-# Amplitudes below so many standard deviations of the noise are not drawn.
+# Amplitudes below CLEAR standard deviations of the noise are not drawn.
 CLEAR = 5.0
 # Units of the first channel, and what turns SI into them.
 UNITS = {"displacement": ("mm", style.MM), "velocity": ("mm/s", style.MM), "acceleration": ("m/s²", 1.0)}

@@ -23,7 +23,7 @@ FEWEST = 1024  # samples of a record
 WINDOWS = 24  # of a record, side by side; they overlap
 OVERLAP = 0.875
 LEVELS = 60.0  # dB below the largest, unless the noise is above that
-# What exceeds the noise so many times stands out of it; higher frequencies are not shown.
+# Power of CLEAR times the noise stands out; frequencies above the highest such power are not shown.
 CLEAR = 20.0
 COLORS = colormaps["BuPu"]
 
@@ -111,7 +111,7 @@ def _follows(before: np.ndarray, after: np.ndarray) -> bool:
 def spectra(record: Record) -> Spectra:
     """Power of the measured motion and of what each model leaves."""
     count = record.time.size
-    # A power of two, so that a record has about so many windows.
+    # A power of two that gives about WINDOWS windows.
     size = 1 << int(np.log2(count / WINDOWS))
     rate = (count - 1) / (record.time[-1] - record.time[0])
     frequency, middle, power = spectrogram(

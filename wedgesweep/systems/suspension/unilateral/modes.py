@@ -40,7 +40,7 @@ from wedgesweep.systems.suspension.unilateral.motion import (
 
 # Slip below this share of the input velocity counts as none under a set-valued law.
 STILL = 1e-11
-# If no mode is certain at an instant, so many later ones are tried, each this many times farther ahead.
+# If no mode is certain at an instant, MOMENTS later ones are tried, each FARTHER times as far ahead.
 MOMENTS, FARTHER = 4, 30.0
 
 
