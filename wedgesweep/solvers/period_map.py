@@ -31,7 +31,7 @@ from wedgesweep.hybrid.state import CHATTERING, HANDED_OVER, LOCKED, State
 from wedgesweep.hybrid.vectors import store, vector
 from wedgesweep.solvers.integrate import EVENTS_PER_PERIOD, Workspace, initial_state, integrate, workspace
 from wedgesweep.solvers.period_detection import LONGEST_PERIOD
-from wedgesweep.systems import state_count, while_closed
+from wedgesweep.systems import while_closed
 
 # Room for the states and for the numbers of a mode of any system.
 MOST_STATES, MOST_MODE = 32, 16
@@ -188,7 +188,7 @@ class Cases(NamedTuple):
 
 def prepared(records: np.ndarray) -> Cases:
     """Cases of compact records, shape (n,)."""
-    n, size, closed = len(records), state_count(records), while_closed(records)
+    n, size, closed = len(records), count_states(records), while_closed(records)
     smaller = records if closed is None else closed
     found = Cases(
         period_map(records.dtype),
@@ -201,7 +201,7 @@ def prepared(records: np.ndarray) -> Cases:
         closed is not None,
         period_map(smaller.dtype),
         _as_bytes(smaller),
-        state_count(smaller),
+        count_states(smaller),
     )
     describe(records, found.scales, found.clocks, found.cycle, found.repeats)
     return found
@@ -209,6 +209,12 @@ def prepared(records: np.ndarray) -> Cases:
 
 def _as_bytes(records: np.ndarray) -> np.ndarray:
     return records.view(np.uint8).reshape(len(records), -1)
+
+
+@compiled
+def count_states(records):
+    """Number of states of records of a type, also of a system from outside."""
+    return len(scales(records[0]))
 
 
 @compiled
