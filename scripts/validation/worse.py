@@ -16,7 +16,7 @@ from wedgesweep import toml
 
 Columns = dict[str, np.ndarray]
 # Column of the time (s), and columns of channels that may be late.
-TIME, LATE = "t", ("v", "F")
+TIME, LATE = "t", ("F", "u")
 
 
 class Way(NamedTuple):
@@ -100,7 +100,7 @@ def missing(columns: Columns, size: float, random: np.random.Generator) -> Colum
 
 
 def delay(columns: Columns, size: float, random: np.random.Generator) -> Columns:
-    """Velocity, or force, is late by a time of which the std is known."""
+    """The force of loops, or the input, is late by a time of which the std is known."""
     times = columns[TIME] - size * random.normal() * _step(columns)
     return _at(columns, np.clip(times, columns[TIME][0], columns[TIME][-1]), LATE)
 
@@ -138,7 +138,7 @@ def worsen(data: Path, name: str, size: float, random: np.random.Generator) -> N
         _write(data / test["file"], WAYS[name].worsened(columns, size, random))
     if name == DELAY:
         channels = document["measurement"]["columns"]
-        late = next(channels[each] for each in ("velocity", "force") if each in channels)
+        late = next(channels[each] for each in ("force", "input") if each in channels)
         late["delay_std_ms"] = float(f"{1e3 * size * step:.4g}")
         file.write_text(toml.dumps(document))
 

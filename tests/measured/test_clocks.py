@@ -204,6 +204,10 @@ KEYS = {
         "delay_std_ms = 0",
         "velocity.delay_std_ms: 0 is out of range; it must be greater than 0",
     ),
+    "delay_std_ms of a response": (
+        "delay_std_ms = 1",
+        "velocity.delay_std_ms: a delay between displacement and velocity is not fitted",
+    ),
 }
 
 

@@ -9,6 +9,7 @@ from wedgesweep.measured.declarations import (
     ABSOLUTE,
     AMPLITUDE,
     COLUMNS,
+    DELAY_STD,
     FORCE_AMPLITUDE,
     INPUT,
     INPUT_GAIN_STD,
@@ -40,6 +41,7 @@ def faults(
     gain_std = stds[INPUT_GAIN_STD.key]
     found = [fault for kind, own in by_kind.items() for fault in channel_faults(own, gain_std, kind)]
     found += [fault for kind, own in by_kind.items() for fault in _known_force_faults(own, kind)]
+    found += _delay_faults(by_kind)
     if stds[INPUT_HARMONICS_STD.key]:
         found += [f"{INPUT_HARMONICS_STD.key}: {fault}" for fault in _harmonics_faults(by_kind)]
     if DISTORTION in stds[UNCERTAIN.key]:
@@ -57,6 +59,21 @@ def _known_force_faults(columns: Mapping[str, Mapping[str, Any]], kind: str) -> 
         return []
     mend = f'record loops, or an {INPUT} with quantity = "{FORCE}" (this one, if there is no other)'
     return [f"{KNOWN_FORCE}: it is not simulated beside a base that moves, in tests of kind {kind}; {mend}"]
+
+
+def _delay_faults(by_kind: Mapping[str, Mapping[str, Mapping[str, Any]]]) -> list[str]:
+    """Why a delay cannot be fitted: fits know one between responses here, force or input there."""
+    late: dict[str, list[str]] = {}
+    for own in by_kind.values():
+        responses = [name for name in RESPONSES if name in own and name != FORCE]
+        other_side = [name for name in (FORCE, INPUT) if name in own]
+        fitted = [*other_side, *(responses if other_side and len(responses) == 1 else ())]
+        late |= {name: responses for name in own if DELAY_STD.key in own[name] and name not in fitted}
+    mend = f"only one between responses and {FORCE} or {INPUT}; omit it, or leave the channel out"
+    return [
+        f"{name}.{DELAY_STD.key}: a delay between {' and '.join(responses)} is not fitted, {mend}"
+        for name, responses in late.items()
+    ]
 
 
 def _harmonics_faults(by_kind: Mapping[str, Mapping[str, Any]]) -> list[str]:
