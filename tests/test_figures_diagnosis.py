@@ -32,6 +32,17 @@ def build(verdict="named", **options):
     return DiagnosisResult(*fixture_diagnosis.build(verdict, **options))
 
 
+def test_explanations_by_more_than_two_effects_have_a_colour_of_their_own():
+    result = build("none-of-mine")
+    ladder = result.document["ladder"]
+    ladder += [{**ladder[-1], "effects": ["a", "b", "c", "d"][:n], "accuracy": 0.01 / n} for n in (3, 4)]
+    figure = draw("ladder", result)
+    (legend,) = figure.legends
+    assert "best with more effects" in [text.get_text() for text in legend.get_texts()]
+    labels = [text.get_text() for text in figure.axes[0].get_yticklabels()]
+    assert {"a + b + c", "a + b + c + d"} <= {*labels}
+
+
 def draw(kind, result):
     figure = figures.draw(result, kind)
     figure.draw_without_rendering()

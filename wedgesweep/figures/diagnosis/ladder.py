@@ -16,8 +16,8 @@ from wedgesweep.figures.panels import Panels, Target, panels
 NAME = "ladder"
 DESCRIPTION = "accuracy of the best explanations with no effect, one, two and more, and of their rivals"
 
-COLORS = (style.VERMILLION, style.BLUE, style.GREEN)
-SIZES = ("no effect", "one effect", "two effects")
+COLORS = (style.VERMILLION, style.BLUE, style.GREEN, style.PURPLE)
+SIZES = ("no effect", "one effect", "two effects", "more effects")
 UNRESOLVED = "0.9"  # grey of what is below the noise floor
 LABEL = {"facecolor": "white", "edgecolor": "none", "pad": 0.5}
 # Room between the rows of one size and the next, in rows.
