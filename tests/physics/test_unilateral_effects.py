@@ -245,3 +245,20 @@ def test_a_heavy_side_frame_on_a_stiff_table_moves_as_the_base(law):
     assert rigid["impacts"] > 0.0
     for name in ("amplitude_ratio", "column_open_fraction", "bolster_open_fraction", "impact_energy"):
         assert moving[name] == pytest.approx(rigid[name], rel=2e-3), name
+
+
+@pytest.mark.acceptance
+@pytest.mark.parametrize(
+    ("law", "effects"),
+    [("coulomb", FIXTURE), ("static-dynamic", {"guide_friction": {"force": 0.3}})],
+)
+def test_nothing_changes_where_nothing_lifts_off(law, effects):
+    steady = Settings(method="event-driven", rtol=1e-11, duration=None, settle_periods=20, kept_periods=2)
+    for beta, amplitude in ((0.4, 1e-3), (1.4, 1e-4)):
+        held, opens = (
+            dict(respond(record(effects, law, amplitude, beta, joints=joints), steady, 9)[0].numbers)
+            for joints in parameters.JOINTS
+        )
+        assert held["lift_off_fraction"] == opens["impacts"] == 0.0
+        assert opens.pop("periodicity") == pytest.approx(held.pop("periodicity"), abs=1e-8)
+        assert opens == pytest.approx(held, rel=1e-8, abs=1e-11, nan_ok=True)
