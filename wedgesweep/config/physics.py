@@ -42,7 +42,7 @@ def breakaway(config: Config) -> dict[str, tuple[tuple[str, ...], np.ndarray, di
     Least and most base acceleration (m/s2) at which Coulomb's law lets a suspension slip from rest; NaN where
     friction is not set-valued, or effects have mechanics of their own. Inf: it jams.
     """
-    # Each sample is a model of its own: a linear programme (0.1 ms) for each, and nobody reads such bounds alone.
+    # Each sample is a model of its own, with a linear programme (0.1 ms) for bounds that nobody reads alone.
     if config.system == OSCILLATOR or SAMPLE in config.sweep.dims:
         return {}
     dims, cases = config.sweep.along((LAW, *config.sweep.keys))
