@@ -121,5 +121,5 @@ def test_a_fine_sweep_is_no_single_group():
     frequencies = np.arange(30.0, 38.1, 0.5)
     found = harmonic_data.groups_of_equal(frequencies[::-1].copy())
     assert sorted(np.concatenate(found).tolist()) == list(range(frequencies.size))
-    assert max(np.ptp(np.log(frequencies[::-1][group])) for group in found) <= harmonic_data.tone.ALIKE
+    assert max(np.ptp(np.log(frequencies[::-1][group])) for group in found) <= harmonic_data.SAME_GROUP
     assert len(found) > 5

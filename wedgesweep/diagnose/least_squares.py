@@ -5,7 +5,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from wedgesweep.diagnose.changes import SLIGHT
 from wedgesweep.diagnose.evaluation import Evaluation, Point
 from wedgesweep.diagnose.jacobian import conservative_jacobian, jacobian
 from wedgesweep.diagnose.model import TIGHT, Fit, Model
@@ -26,6 +25,8 @@ MAX_STEP = 3.0
 # Largest share of the tests whose nuisance parameters a step may leave where they are, and the least share of
 # the predicted gain that the other tests must make then.
 FEW_TESTS, LEAST_GAIN = 0.25, 0.5
+# A parameter hardly shows if its largest step changes chi-squared by less than this.
+UNNOTICED = 1.0
 
 
 class Step(NamedTuple):
@@ -107,7 +108,7 @@ def _parameter_step(model: Model, x: np.ndarray, equations: NormalEquations, dam
     free = ~(((x <= model.low) & (gradient > 0.0)) | ((x >= model.high) & (gradient < 0.0)))
     longest = MAX_STEP * model.scale
     step = _damped_solution(matrix, gradient, damping, free)
-    too_weak = free & (np.diag(matrix) * longest**2 < SLIGHT) & (np.abs(step) > longest)
+    too_weak = free & (np.diag(matrix) * longest**2 < UNNOTICED) & (np.abs(step) > longest)
     if too_weak.any():
         # A parameter that hardly shows must not shorten the step of the others.
         fixed = np.where(too_weak, np.clip(step, -longest, longest), 0.0)

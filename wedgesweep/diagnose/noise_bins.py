@@ -19,7 +19,6 @@ from wedgesweep.diagnose.noise_spectrum import (
     fit_spectra,
     periodogram,
 )
-from wedgesweep.diagnose.smoothing import LEAST_KEPT
 
 # A bin with this many times the power of the noise is part of a line, as are this many neighbours on either
 # side. Noise and lines are estimated in turn, in this many rounds.
@@ -38,8 +37,8 @@ HIGHEST, STEPS = 0.75 * pi, 16
 UPWARDS = 4
 # Bands per octave, and ratio of the power of two bands an octave apart beyond which the lower one is motion.
 BANDS, STEEP = 2, 12.0
-# Least number of bins that count as noise, which are at least LEAST_KEPT of those above the motion.
-FEWEST = 8
+# Least share of the bins above the motion, and least number of bins, that must count as noise.
+LEAST_KEPT, FEWEST = 0.25, 8
 # A record is divided into PARTS. Those at its end, or beginning, whose rms is at most ALIKE times the least
 # one are quiet if there are at least QUIET_PARTS of them, with at most QUIET_SHARE of the record's rms, and
 # with at least QUIET_SAMPLES samples.

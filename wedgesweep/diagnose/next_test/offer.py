@@ -11,12 +11,11 @@ from typing import NamedTuple
 import numpy as np
 from scipy.ndimage import minimum_filter1d
 
-from wedgesweep.diagnose.changes import SLIGHT
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.next_test.designs import Design, Offer, offered
 
-# Squared distance at which two explanations are separated; below SLIGHT they do not differ visibly.
-SEPARATED = 30.0
+# Squared distance at which two explanations are separated, and below which they do not differ visibly.
+SEPARATED, UNSEEN = 30.0, 1.0
 # Tests that are looked at closely, if explanations adapt to those before.
 TRIED = 5
 
@@ -47,7 +46,7 @@ class NextTest:
 def recommended(design: Design, fits: Sequence[Fit]) -> NextTest | None:
     """The test of a design that separates most fits, the best one first; None where none differ visibly."""
     offer = offered(design, fits)
-    if not (offer.distances > SLIGHT).any():
+    if not (offer.distances > UNSEEN).any():
         return None
     chosen, here = _confirmed(offer)
     pairs = list(combinations(offer.fits, 2))

@@ -43,6 +43,8 @@ IMPLAUSIBLE = 0.3
 HELD = 1e-4
 # A covariance is replaced if the variance of some combination of residuals changes by more than this factor.
 CHANGED = 1.1
+# Frequencies or amplitudes closer than this (relative) are left out together in cross-validation.
+SAME_GROUP = 0.02
 
 
 class SteadyResponse(NamedTuple):
@@ -389,12 +391,12 @@ def stated(data: HarmonicData) -> Scenario:
 
 
 def groups_of_equal(values: np.ndarray) -> list[np.ndarray]:
-    """Indices of values that are the same to within tone.ALIKE, group by group."""
+    """Indices of values that are the same to within SAME_GROUP, group by group."""
     order = np.argsort(values)
     found = [[order[0]]]
     for place in order[1:]:
         # Compared with the first of the group: in a fine sweep each is close to its neighbour.
-        if np.log(values[place] / values[found[-1][0]]) > tone.ALIKE:
+        if np.log(values[place] / values[found[-1][0]]) > SAME_GROUP:
             found.append([])
         found[-1].append(place)
     return [np.array(group) for group in found]

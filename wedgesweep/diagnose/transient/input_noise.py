@@ -13,10 +13,12 @@ from typing import NamedTuple
 import numpy as np
 from scipy.fft import dct
 
-from wedgesweep.diagnose.decorrelation import LARGEST_BLOCK, Decorrelation, decorrelation
+from wedgesweep.diagnose.decorrelation import Decorrelation, decorrelation
 from wedgesweep.diagnose.smoothing import derivative
 from wedgesweep.sampled_input import SampledInput, polynomials
 
+# Number of coefficients of a channel, from the lowest frequency up, whose correlation is accounted for.
+MOST_CORRELATED = 400
 # Knots of the input beyond a window to either side.
 BEYOND = 3
 
@@ -96,7 +98,7 @@ def converted(parts: Cosines, shares: Sequence[float], orders: Sequence[int], le
 
 
 def decorrelated(own: np.ndarray, changes: np.ndarray) -> tuple[Decorrelation, ...]:
-    """Combinations with independent noise of the first LARGEST_BLOCK coefficients of each channel.
+    """Combinations with independent noise of the first MOST_CORRELATED coefficients of each channel.
 
     Parameters
     ----------
@@ -105,11 +107,11 @@ def decorrelated(own: np.ndarray, changes: np.ndarray) -> tuple[Decorrelation, .
     changes : ndarray, shape (k, C, n)
         What each cosine of the input does to each channel.
     """
-    size = min(own.shape[1], LARGEST_BLOCK)
+    size = min(own.shape[1], MOST_CORRELATED)
     by_input = np.moveaxis(dct(changes, norm="ortho")[..., :size], 1, 0)
 
     def combinations(variance: np.ndarray, change: np.ndarray) -> Decorrelation:
         covariance = np.diag(variance[:size]) + change.T @ change
-        return decorrelation(np.ones(size, bool), lambda rows: covariance, 0.0)
+        return decorrelation(np.ones(size, bool), lambda rows: covariance[np.ix_(rows, rows)], 0.0)
 
     return tuple(map(combinations, own, by_input))

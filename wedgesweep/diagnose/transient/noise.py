@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from wedgesweep.diagnose import repeats
-from wedgesweep.diagnose.noise_bins import FEWEST, OwnNoise, noise_bins, quiet_bins, without_skirts
+from wedgesweep.diagnose.noise_bins import OwnNoise, noise_bins, quiet_bins, without_skirts
 from wedgesweep.diagnose.noise_spectrum import (
     BEST_FIT,
     FROM_REPEATS,
@@ -37,7 +37,7 @@ ACCELERATION = 2
 # Sampling rates that differ by less than this are the same.
 SAME_RATE = 1e-3
 # Bins reach down to the motion if at least FEWEST of them lie below NEAR times its frequency.
-NEAR = 4.0
+NEAR, FEWEST = 4.0, 8
 # Rounds in which the noise of each channel is estimated from that of the others.
 ROUNDS = 3
 
