@@ -6,6 +6,7 @@ import pytest
 from tests import fixture_measured
 from tests.fixture_measured import MEASURED, vibration
 from wedgesweep import measured
+from wedgesweep.measured import channels
 
 RECORDED = (
     MEASURED.replace("amplitude_mm = 0.3\namplitude_std = 0.01\n", "")
@@ -44,6 +45,17 @@ def test_an_absolute_acceleration_alone_is_a_response(tmp_path):
     assert found.tests[0].displacement is None
     assert found.columns["acceleration"]["of"] == "absolute"
     np.testing.assert_allclose(found.tests[0].acceleration, 1e-3 * vibration()[1], rtol=1e-5)
+
+
+def test_a_delay_of_a_response_may_be_fitted_beside_one_force_only():
+    """Of displacement against the force of loops, also beside free decays; not against a velocity."""
+    late, force = {"delay_std_ms": 1.0}, {"force": {}}
+    stds = {"input_gain_std": 0.0, "input_harmonics_std": 0.0, "uncertain": {}}
+    loops, decays = {"displacement": late, **force}, {"displacement": late}
+    assert channels.faults({"loop": loops, "transient": decays}, stds, None) == []
+    two = {**decays, "velocity": {}}
+    (fault,) = channels.faults({"loop": loops, "transient": two}, stds, None)
+    assert fault.startswith("displacement.delay_std_ms: only a delay of force, input or their only response")
 
 
 @pytest.mark.parametrize("unit", ["m/s^2", "m/s2", "m/s²"])

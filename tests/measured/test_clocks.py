@@ -206,7 +206,7 @@ KEYS = {
     ),
     "delay_std_ms of a response": (
         "delay_std_ms = 1",
-        "velocity.delay_std_ms: a delay between displacement and velocity is not fitted",
+        "velocity.delay_std_ms: only a delay of force, input or their only response is fitted",
     ),
 }
 

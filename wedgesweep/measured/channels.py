@@ -62,18 +62,14 @@ def _known_force_faults(columns: Mapping[str, Mapping[str, Any]], kind: str) -> 
 
 
 def _delay_faults(by_kind: Mapping[str, Mapping[str, Mapping[str, Any]]]) -> list[str]:
-    """Why a delay cannot be fitted: fits know one between responses here, force or input there."""
-    late: dict[str, list[str]] = {}
+    """Why a delay cannot be fitted: fits know one, between all responses and a force or an input."""
+    late: dict[str, None] = {}
     for own in by_kind.values():
         responses = [name for name in RESPONSES if name in own and name != FORCE]
-        other_side = [name for name in (FORCE, INPUT) if name in own]
-        fitted = [*other_side, *(responses if other_side and len(responses) == 1 else ())]
-        late |= {name: responses for name in own if DELAY_STD.key in own[name] and name not in fitted}
-    mend = f"only one between responses and {FORCE} or {INPUT}; omit it, or leave the channel out"
-    return [
-        f"{name}.{DELAY_STD.key}: a delay between {' and '.join(responses)} is not fitted, {mend}"
-        for name, responses in late.items()
-    ]
+        fitted = (FORCE, INPUT, *(responses if len(responses) == 1 else ()))
+        late |= dict.fromkeys(name for name in own if DELAY_STD.key in own[name] and name not in fitted)
+    fault = f"only a delay of {FORCE}, {INPUT} or their only response is fitted; omit it"
+    return [f"{name}.{DELAY_STD.key}: {fault}" for name in late]
 
 
 def _harmonics_faults(by_kind: Mapping[str, Mapping[str, Any]]) -> list[str]:
