@@ -192,8 +192,9 @@ def expected_event(forces, t, y, mode, p):
 def follow(state, stop, p, keeping, recorder, work):
     """Follow a mode by a method of the system's own to its event or ``stop``, or several, one by one.
 
-    Returns whether it has one, the state reached, and the event, NO_EVENT, FAILED or HANDED_OVER. ``work``:
-    tolerance and counts of the run (``integrate.Workspace``), among them that of the events passed.
+    Returns whether it has one, the state reached, and the event, NO_EVENT or FAILED. It may stop without an
+    event, even where it began, in a mode that ``leaves`` hands over. ``work``: tolerance and counts of the
+    run (``integrate.Workspace``), among them that of the events passed.
     """
     return False, state, NO_EVENT
 

@@ -13,7 +13,7 @@ from wedgesweep.hybrid.step import dense_output, dense_slope
 PLACE_OF_EXTREME = 1e-9
 
 
-class _Motion(NamedTuple):
+class _Rate(NamedTuple):
     """Observed velocity on a step, or its derivative by the share of the step (``order`` 1), times a sign."""
 
     order: int
@@ -22,23 +22,23 @@ class _Motion(NamedTuple):
     p: Any
 
 
-@searched(_Motion)
+@searched(_Rate)
 @inner
-def _signed(share, motion):
-    slope = motion.sign * observed(dense_slope(share, motion.step), motion.p)[1]
-    if motion.order == 1:
+def _signed(share, rate):
+    slope = rate.sign * observed(dense_slope(share, rate.step), rate.p)[1]
+    if rate.order == 1:
         return slope, nan
-    return motion.sign * observed(dense_output(share, motion.step), motion.p)[1], slope
+    return rate.sign * observed(dense_output(share, rate.step), rate.p)[1], slope
 
 
 @inner
 def _record_extremes(share, step, mode, recorder, p):
     """Record the extremes of displacement and velocity in a step up to a share of it."""
     for order in range(2):
-        rate = _Motion(order, 1.0, step, p)
+        rate = _Rate(order, 1.0, step, p)
         first, last = _signed(0.0, rate)[0], _signed(share, rate)[0]
         if first * last < 0.0:
-            falling = _Motion(order, 1.0 if first > 0.0 else -1.0, step, p)
+            falling = _Rate(order, 1.0 if first > 0.0 else -1.0, step, p)
             there = zero(falling, Bracket(0.0, abs(first), share, -abs(last)), PLACE_OF_EXTREME)
             record_node(step.t + there * step.h, dense_output(there, step), 0.0, mode, recorder, p)
 

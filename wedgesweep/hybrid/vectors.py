@@ -14,24 +14,25 @@ from wedgesweep.traced import traced
 _set_item: Any = tuple_setitem
 
 
-def _sum_of_products(i, factors, vectors):
-    """Element i of the sum of vectors, each times a factor."""
-    terms = [factor * each[i] for factor, each in zip(factors, vectors, strict=True)]
-    return sum(terms[1:], terms[0])
+def _products(i, factors, vectors):
+    """Element i of each vector times its factor."""
+    return [factor * each[i] for factor, each in zip(factors, vectors, strict=True)]
 
 
 @traced
 def weighted(start, scale, weights, vectors):
     """Start + scale (w_1 v_1 + w_2 v_2 + ...), each product with the scale taken first."""
     factors = [scale * weight for weight in weights]
-    return tuple(each + _sum_of_products(i, factors, vectors) for i, each in enumerate(start))
+    # Added one by one to the start: each product and its sum are one operation.
+    return tuple(sum(_products(i, factors, vectors), each) for i, each in enumerate(start))
 
 
 @traced
 def combination(scale, weights, vectors):
     """The weighted sum alone."""
     factors = [scale * weight for weight in weights]
-    return tuple(_sum_of_products(i, factors, vectors) for i in range(len(vectors[0])))
+    elements = [_products(i, factors, vectors) for i in range(len(vectors[0]))]
+    return tuple(sum(terms[1:], terms[0]) for terms in elements)
 
 
 def vector(array, like):

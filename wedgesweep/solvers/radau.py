@@ -51,8 +51,9 @@ def inverse(matrix: np.ndarray) -> np.ndarray:
 class StrictRadau(Radau):
     """scipy's Radau that rejects a step whose error cannot be estimated.
 
-    To estimate it once more, scipy takes the rate at the state less its error. There a wedge may lock, so
-    that no rate exists: scipy raises ValueError, and would accept the step if it did not check.
+    After a rejection scipy estimates the error once more, by the rate where the step begins, moved by the
+    error. A wedge may lock there, so that no rate exists: scipy raises ValueError, and would accept the step
+    if it did not check.
     """
 
     def __init__(self, *arguments: Any, **options: Any) -> None:

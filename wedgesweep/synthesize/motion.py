@@ -11,8 +11,9 @@ from math import ceil, exp, pi
 import numpy as np
 
 from wedgesweep.solvers import periodic, radau
+from wedgesweep.solvers.period_map import count_states
 from wedgesweep.solvers.trajectory import TimedWindow
-from wedgesweep.systems import compact, state_count
+from wedgesweep.systems import compact
 
 RTOL = 1e-8
 # Settling ends when a period changes the state by less than this share of the input.
@@ -117,7 +118,7 @@ def _steady_state(record: np.ndarray) -> Sequence[float]:
     found = periodic.respond(record, periodic.at_rest(1), STEADY, 64, 1)
     if found.outcome[0] != periodic.OK or found.warm.period[0] != 1:
         return (0.0, 0.0)
-    return found.warm.state[0, : state_count(compact(record))].tolist()
+    return found.warm.state[0, : count_states(compact(record))].tolist()
 
 
 def sines(waves: Iterable[tuple[float, float, float]], time: np.ndarray, order: int) -> np.ndarray:

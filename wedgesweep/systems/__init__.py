@@ -17,10 +17,9 @@ from wedgesweep.systems.suspension.unilateral import hybrid as _unilateral_hybri
 SYSTEMS = {"suspension": suspension_parameters, "oscillator": oscillator_parameters}
 
 
-def state_count(records: np.ndarray | None = None) -> int:
-    """Number of states of records; of the largest ones if none are given."""
-    some = [each.record_type() for each in SYSTEMS.values()] if records is None else [records.dtype]
-    return max(len(states.kinds(kind.fields or {})) for kind in some)
+def state_count() -> int:
+    """Number of states of the largest records."""
+    return max(len(states.kinds(each.record_type().fields or {})) for each in SYSTEMS.values())
 
 
 def compact(parameters: np.ndarray) -> np.ndarray:

@@ -30,7 +30,7 @@ def follow(state, stop, p, keeping, recorder, work):
         return follow_linear(state, stop, p, keeping, recorder)
     forward, backward, loaded = breakaway_range(state.y, state.mode.segment, p)
     if not loaded:
-        # The system for joints that can open takes over; other joints are followed step by step.
+        # Joints that can open: ``leaves`` hands over to the other system. Others are integrated step by step.
         return p.geometry.opens != 0, state, NO_EVENT
     end, event = breakaway_between(forward, backward, state.t, stop, p)
     if keeping:
