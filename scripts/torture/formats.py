@@ -34,7 +34,9 @@ def _wav(path: Path, columns: dict[str, Any]) -> None:
 # Writers of named columns by the name of their file.
 WRITERS: dict[str, Writer] = {
     **dict(fixture_formats.SPECIMENS),
-    **{"one.npy": _npy, "one.wav": _wav, "one.uff": fixture_formats.uff},
+    "one.npy": _npy,
+    "one.wav": _wav,
+    "one.uff": fixture_formats.uff,
 }
 
 
@@ -54,7 +56,7 @@ def spoil(path: Path, content: bytes, draw: Random) -> None:
     ways: list[Callable[[], object]] = [lambda: path.write_bytes(mutations.raw(content, draw))]
     if zipfile.is_zipfile(BytesIO(content)):
         ways += [lambda: _spoil_member(path, content, draw)]
-    ways += [partial(_odd, path, draw)]
+    ways.append(partial(_odd, path, draw))
     # The library of a format refuses some arrays, in any way.
     logging.disable()
     try:
@@ -97,7 +99,7 @@ def _array(samples: np.ndarray, draw: Random) -> object:
         return samples
     odd = samples.copy()
     odd[draw.randrange(odd.size)] = draw.choice(mutations.NUMBERS)
-    shapes = (
+    odd_ones = (
         odd,
         samples[:, None],
         samples[None, None],
@@ -106,8 +108,6 @@ def _array(samples: np.ndarray, draw: Random) -> object:
         samples[::-1],
         samples.astype("f4"),
         samples.astype(complex),
-    )
-    others = (
         np.stack([samples, samples]),
         np.zeros((0, 0)),
         "text",
@@ -118,5 +118,7 @@ def _array(samples: np.ndarray, draw: Random) -> object:
         (1e3 * samples).astype("datetime64[us]"),
         samples.astype(str),
         samples.astype(object),
+        np.round(samples),
+        samples * draw.choice((1e-200, 1e200)),
     )
-    return draw.choice((*shapes, *others, np.round(samples), samples * draw.choice((1e-200, 1e200))))
+    return draw.choice(odd_ones)

@@ -333,7 +333,7 @@ def _measurement(given: Specimens, place: Path) -> None:
     (place / "model.toml").write_text(mutations.toml(MODEL))
 
 
-# Files of measured data by their format: all but CSV are called as fixtures of tests are.
+# Measured data by the name of a file in formats.WRITERS; CSV is text.
 FORMATS: dict[str, Kind] = {"csv": csv, **{name: partial(_stored, name=name) for name in formats.WRITERS}}
 KINDS: dict[str, Kind] = {
     **{kind.__name__: kind for kind in (config, run, measured, model, first, clock, dataset, figure)},

@@ -91,7 +91,7 @@ def goals(sets: Sets) -> list[Goal]:
     """All lines of the table."""
     clean = share(sets.of("clean"), judge.names_any)
     unknown, two, three = sets.of("unknown"), sets.of("poor"), sets.of("added")
-    imperfect, errors = sets.of("imperfect"), sets.of("errors-only")
+    imperfect, errors, worse = sets.of("imperfect"), sets.of("errors-only"), sets.of(WORSE)
     return [
         Goal("nothing hidden: a cause named", "at most 1", str(clean), clean.hits <= 1 if clean.n else None),
         _at_least("one effect, excess >= 800: right family", sets.strong, judge.right_family, 0.95),
@@ -115,7 +115,7 @@ def goals(sets: Sets) -> list[Goal]:
         _at_least("rig of any size: exact or in a tie", sets.of("random-rig"), judge.exact_or_tied, 0.95),
         _at_least("oscillator: exact or in a tie", sets.of("oscillator"), judge.exact_or_tied, 0.95),
         *(line for kind in TIME_KINDS for line in _of_time_records(kind, sets.of(kind))),
-        _coverage("  95 % intervals cover", [r for r in sets.of(WORSE) if r["truth"] and judge.exact(r)]),
+        _coverage(f"{WORSE}: 95 % intervals cover", [r for r in worse if r["truth"] and judge.exact(r)]),
         _coverage("95 % intervals (single effects, exact) cover", sets.exact_singles),
         *_gain(sets.exact_singles),
     ]

@@ -29,7 +29,7 @@ from wedgesweep.sweep.provenance import git_commit
 KEPT = ("law", "column_angle_deg", "noise", "spread", "uncertain", "expected", "record_input", "size")
 COMPARED = ("clean", "strong", "weak", "pair", "unknown", "poor", "added")
 RECORD, DRAFT, TRUTH = "record.json", "draft.json", "truth.json"
-# Attempts at a draw end before this one.
+# The generator that makes files worse: a number that no attempt at a draw has.
 WORSENED = 1000
 DATA, RESULT = "data", "diagnosis"
 # Relative std with which the amplitude of a recommended test is known.
@@ -139,7 +139,7 @@ def _run_time_records(one: DataSet, directory: Path) -> Record:
     wedgesweep("synthesize", *files, *noise, *more, "--settle-periods", SETTLE_PERIODS)
     made = {key: drawn[key] for key in ("law", "noise", "level")}
     if one.kind == time_records.WORSE:
-        way, size = worse.of(one.index)
+        way, size, _ = worse.of(one.index)
         worse.worsen(directory / DATA, way, size, one.random(WORSENED))
         made |= {"way": way, "size": size}
     found = _diagnose(one, directory, clock)

@@ -2,7 +2,7 @@
 
 Oscillators and suspensions of any size take turns. Each hides one effect, or none in every fifth set. It is
 as strong as is needed for a drawn change of the response; sets whose excess is too small for a name all the
-same count as weak.
+same count as weak. A set of kind ``worse`` is one of these three, whose files ``worse.py`` makes worse.
 """
 
 from collections.abc import Callable
@@ -30,7 +30,7 @@ LAWS = ("coulomb", "static-dynamic")
 # Effects of a sine as an input, and those that a loop cannot show.
 OF_A_SINE = ("input_distortion", "stray_vibration", "fixture_resonance", "cross_slip")
 NOT_IN_LOOPS = (*OF_A_SINE, "column_compliance", "displacement_gain", "velocity_lag")
-# Every so many sets one hides nothing.
+# Of CLEAN_EACH sets the last one hides nothing.
 CLEAN_EACH = 5
 # Of a suspension of the bench's size: natural frequency (Hz), largest motion (mm) that it is released to, and
 # that is imposed on it (a larger one lifts its wedges off), motion of the base in steady tests.
@@ -44,7 +44,7 @@ STATIC, DYNAMIC = 0.36, 0.3
 TRAVEL_MM, MASS_KG, LEVEL = (2.0, 30.0), (0.5, 20.0), (0.005, 0.02)
 # Change of the response to the first release or loop over that response, and attempts to reach it.
 CHANGE, ATTEMPTS = (0.05, 0.5), 60
-# After so many of them the next effect takes the place of the one that is due.
+# After SAME_EFFECT attempts the next effect takes the place of the one that is due.
 SAME_EFFECT = 5
 # Sampling rate, lengths of a release, a sweep and a loop in natural periods.
 SAMPLED, RELEASE, SWEEP, LOOPS = 60.0, 8.0, 24.0, 20.0
@@ -86,7 +86,10 @@ def _drawn(one: DataSet, attempt: int) -> dict[str, Any] | None:
     random = one.random(attempt)
     law = LAWS[one.index % len(LAWS)]
     drawn = _suspension(random) if one.index // 2 % 2 else _oscillator(random)
-    kind = tuple(TESTS)[one.index // len(worse.WAYS) % len(TESTS)] if one.kind == WORSE else one.kind
+    kind, turn = one.kind, one.index
+    if kind == WORSE:  # each fault in all kinds of test, and then with all kinds of noise
+        turn, place = divmod(worse.of(one.index).turn, len(TESTS))
+        kind = tuple(TESTS)[place]
     rig, tests = drawn.rig, TESTS[kind](drawn)
     planned = plan.from_document({"test": tests}).tests
     sampling_hz = round(SAMPLED * drawn.frequency, 3)
@@ -114,7 +117,7 @@ def _drawn(one: DataSet, attempt: int) -> dict[str, Any] | None:
         "tests": tests,
         "sampling_hz": sampling_hz,
         "level": round(rigs.logarithmic(LEVEL, random), 5),
-        "noise": NOISES[one.index % 3],
+        "noise": NOISES[turn % 3],
     }
 
 

@@ -119,24 +119,32 @@ WAYS = {
 }
 
 
-def of(index: int) -> tuple[str, float]:
-    """Way and size of the set with an index: the ways take turns, then small and large."""
-    name = list(WAYS)[index % len(WAYS)]
-    return name, WAYS[name].large if index // len(WAYS) % 2 else WAYS[name].small
+class Fault(NamedTuple):
+    """A way, its size, and the turn in which all ways are taken."""
+
+    way: str
+    size: float
+    turn: int
+
+
+def of(index: int) -> Fault:
+    """The fault of the set with an index: all ways take turns, small and large."""
+    turn, place = divmod(index, len(WAYS))
+    way = list(WAYS)[place]
+    return Fault(way, WAYS[way].large if turn % 2 else WAYS[way].small, turn)
 
 
 def worsen(data: Path, name: str, size: float, random: np.random.Generator) -> None:
     """Make the tests of a measurement worse in one way, and declare what its owner would know."""
     file = data / "measured.toml"
     document = tomllib.loads(file.read_text())
-    seed = random.integers(2**31)
-    for test in document["measurement"]["test"]:
-        columns = _read(data / test["file"])
-        step = _step(columns)
-        if name == DELAY:  # one amplifier delays all tests alike
-            random = np.random.default_rng(seed)
-        _write(data / test["file"], WAYS[name].worsened(columns, size, random))
+    seed, tests = int(random.integers(2**31)), document["measurement"]["test"]
+    for number, test in enumerate(tests):
+        # One amplifier delays all tests alike.
+        own = np.random.default_rng([seed, 0 if name == DELAY else number])
+        _write(data / test["file"], WAYS[name].worsened(_read(data / test["file"]), size, own))
     if name == DELAY:
+        step = _step(_read(data / tests[0]["file"]))
         channels = document["measurement"]["columns"]
         late = next(channels[each] for each in ("force", "input") if each in channels)
         late["delay_std_ms"] = float(f"{1e3 * size * step:.4g}")
