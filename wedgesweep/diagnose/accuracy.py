@@ -106,5 +106,5 @@ def _minimised(fit: Fit, size: float) -> Fit:
     model = fit.model.on(data)
     here = data.compared_again(fit.evaluation)
     x = np.r_[fit.x[: model.size], model.uncertain.mean]
-    as_stated = model.evaluate(replace(data.as_stated(fit.point), x=x, warm=data.start()[1]))
+    as_stated = model.evaluate(replace(data.as_stated(fit.point), x=x))
     return minimise(model, min(here, as_stated, key=lambda each: each.chi2), ITERATIONS)

@@ -186,7 +186,9 @@ class Concatenation(FitData):
 
     def _evaluations(self, here: Evaluation) -> list[Evaluation]:
         """An evaluation as evaluations of the parts."""
-        own = zip(self._points(here.point), *here.response, *self.layout[1:3], self.layout.rows, strict=True)
+        responses, layout = here.response, self.layout
+        points, sizes = self._points(here.point), responses.sizes
+        own = zip(points, responses.parts, sizes, layout.columns, layout.priors, layout.rows, strict=True)
         return [
             replace(
                 here,

@@ -39,7 +39,7 @@ log = logging.getLogger(__name__)
 COMPARED = 6
 # Explanations are close if their penalised chi-squared is within FOLLOWED_GAPS gaps of a tie of the best.
 FOLLOWED_GAPS = 5.0
-# Verdicts after which more is tried than names.
+# Verdicts that name no cause; further effects and an empirical force are tried after them.
 ABSTAINING = (verdict.NONE, verdict.INSUFFICIENT)
 # How the tests of each kind become data of a fit.
 DATA: dict[str, Callable[[Measurement], FitData]] = {

@@ -162,11 +162,12 @@ class FitData(Protocol):
         """Nuisance parameters (T, N) as stated, and a start at rest."""
 
     def as_stated(self, point: Point) -> Point:
-        """A point with the nuisance parameters that have a prior as they are stated."""
-        nuisance, priors = point.nuisance.copy(), self.nuisance_std.shape[1]
-        known, stated = np.isfinite(self.nuisance_std), self.start()[0][:, :priors]
-        nuisance[:, :priors] = np.where(known, stated, nuisance[:, :priors])
-        return replace(point, nuisance=nuisance)
+        """A point with the nuisance parameters that have a prior as stated, and with a start at rest."""
+        stated, at_rest = self.start()
+        known, nuisance = np.isfinite(self.nuisance_std), point.nuisance.copy()
+        priors = known.shape[1]
+        nuisance[:, :priors] = np.where(known, stated[:, :priors], nuisance[:, :priors])
+        return replace(point, nuisance=nuisance, warm=at_rest)
 
     @abstractmethod
     def subset(self, rows: np.ndarray) -> Self:

@@ -1,8 +1,8 @@
 """Forward selection: effects are added to the best pair one at a time, as long as predictions gain.
 
 On a damper rig several causes at once are the rule. Where neither one effect nor two explain the tests, the
-effects that are added next, with the gain of each, say what the model lacks; they are no name. Tests that are
-left out of the fits are the judge, as each further effect fits the others better.
+effects that are added next, with the gain of each, say what the model lacks; they are not named as causes.
+Tests that are left out of the fits are the judge, as each further effect fits the others better.
 """
 
 from collections.abc import Mapping, Sequence
@@ -11,7 +11,7 @@ import numpy as np
 
 from wedgesweep.diagnose.cross_validation import Predictor
 from wedgesweep.diagnose.explanation import Explanation
-from wedgesweep.diagnose.ladder import Level, Rated, level_of, rated_where_it_ended
+from wedgesweep.diagnose.ladder import Level, Rated, by_accuracy, level_of, rated_where_it_ended
 from wedgesweep.diagnose.least_squares import minimise
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.search import Search
@@ -26,7 +26,7 @@ LEVELS = 3
 MOST = 5
 # Iterations of the first fit of each candidate, and candidates that are followed to the end.
 BRIEF, FOLLOWED = 5, 3
-# Work that may be spent, over that of the whole search.
+# Work that may be spent, as a share of the work of the whole search.
 SHARE = 1.0 / 6.0
 
 
@@ -34,15 +34,18 @@ def forward_selection(
     search: Search, explanations: Sequence[Explanation], levels: Sequence[Level], predict: Predictor
 ) -> tuple[Level, ...]:
     """The levels of the ladder, and one more for each effect that is added to its best pair."""
-    singles = {each.effects[0]: each.fit for each in explanations if len(each.effects) == 1}
     found = list(levels)
+    if not _gained(*found[-2:]):
+        return tuple(found)
+    singles = {each.effects[0]: each.fit for each in explanations if len(each.effects) == 1}
     search.budget.grant(SHARE * search.budget.total)
-    while len(found[-1].best.effects) < MOST and _gained(*found[-2:]):
+    while len(found[-1].best.effects) < MOST:
         rated = _with_one_more(search, found[-1].best, singles)
-        if not rated:
+        level = level_of(search, rated, predict) if rated else None
+        if level is None or not _gained(found[-1], level):
             break
-        found.append(level_of(search, rated, predict))
-    return tuple(found if len(found) == len(levels) or _gained(*found[-2:]) else found[:-1])
+        found.append(level)
+    return tuple(found)
 
 
 def _gained(before: Level, after: Level) -> bool:
@@ -59,13 +62,13 @@ def _with_one_more(search: Search, best: Rated, singles: Mapping[str, Fit]) -> l
     )
     leading = sorted(begun, key=lambda fit: fit.chi2)[:FOLLOWED]
     found = search.each(lambda fit: rated_where_it_ended(search.explanation(fit)), leading)
-    return sorted(found, key=lambda each: each.accuracy)
+    return sorted(found, key=by_accuracy)
 
 
 def _begun(search: Search, best: Rated, single: Fit) -> Fit:
     """A fit under the model error of the best explanation, with one effect more.
 
-    That starts as it was fitted by itself, or so weak that it changes nothing.
+    The new effect starts as it was fitted by itself, or so weak that it changes nothing.
     """
     fit = best.fit
     model = search.model(*fit.effects, *single.effects)

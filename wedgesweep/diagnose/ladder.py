@@ -63,7 +63,7 @@ class Level:
 def rough_ladder(search: Search, base: Explanation, explanations: Sequence[Explanation]) -> tuple[Level, ...]:
     """Rate the base model and every eligible explanation where its fit ended, without simulations."""
     allowed = [base, *filter(verdict.eligible, explanations)]
-    rated = sorted(search.each(rated_where_it_ended, allowed), key=_by_accuracy)
+    rated = sorted(search.each(rated_where_it_ended, allowed), key=by_accuracy)
     sizes = sorted({len(each.effects) for each in rated})
     return tuple(Level(tuple(each for each in rated if len(each.effects) == size)) for size in sizes)
 
@@ -93,10 +93,10 @@ def level_of(search: Search, rough: Sequence[Rated], predict: Predictor) -> Leve
     waiting, done = list(rough), list[Rated]()
     chosen = [each for each in waiting[:REFINED] if each.accuracy <= FACTOR * waiting[0].accuracy]
     while chosen:
-        done = sorted([*done, *search.each(_refined, chosen)], key=_by_accuracy)
+        done = sorted([*done, *search.each(_refined, chosen)], key=by_accuracy)
         waiting = waiting[len(chosen) :]
         chosen = _still_to_refine(waiting, done)
-    order = sorted([*done, *waiting], key=_by_accuracy)
+    order = sorted([*done, *waiting], key=by_accuracy)
     return Level((_with_held_out_accuracy(order[0], predict), *order[1:]))
 
 
@@ -104,8 +104,8 @@ def _still_to_refine(waiting: list[Rated], done: list[Rated]) -> list[Rated]:
     """Of explanations that are not refined, best first, those that would rank among the COMPARED best."""
     if len(done) < COMPARED:
         return waiting[: COMPARED - len(done)]
-    last = _by_accuracy(done[COMPARED - 1])
-    return [each for each in waiting[:REFINED] if _by_accuracy(each) < last]
+    last = by_accuracy(done[COMPARED - 1])
+    return [each for each in waiting[:REFINED] if by_accuracy(each) < last]
 
 
 def _with_held_out_accuracy(best: Rated, predict: Predictor) -> Rated:
@@ -119,5 +119,6 @@ def _refined(each: Rated) -> Rated:
     return replace(each, accuracy=found.size, fit=found.fit)
 
 
-def _by_accuracy(each: Rated) -> tuple[float, float]:
+def by_accuracy(each: Rated) -> tuple[float, float]:
+    """Key by which explanations of a size are ranked: accuracy, then penalised chi-squared."""
     return each.accuracy, each.explanation.penalised

@@ -1,6 +1,7 @@
 """Normal equations in which nuisance parameters belong to one test each, solved by a Schur complement."""
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -54,6 +55,12 @@ class NormalEquations:
             matrix, self.global_gradient - np.einsum("tik,ti->tk", self.coupling_block, by_gradient)
         )
 
+    @cached_property
+    def of_all_tests(self) -> Reduced:
+        """Blocks of the parameters alone, of all tests and priors."""
+        both = zip((self.global_block, self.global_gradient), self.prior, strict=True)
+        return Reduced(*(each.sum(axis=0) + prior for each, prior in both))
+
     def schur_complement(self, damping: float = 0.0) -> Reduced:
         """Normal equations of the parameters, nuisance parameters eliminated."""
         both = zip(self.of_each_test(damping), self.prior, strict=True)
@@ -66,9 +73,9 @@ class NormalEquations:
 
     def predicted_reduction(self, step: np.ndarray, local: np.ndarray) -> float:
         """Reduction of chi-squared by a step if the responses are linear."""
-        matrix, gradient = self.global_block.sum(axis=0), self.global_gradient.sum(axis=0)
-        slope = (gradient + self.prior.gradient) @ step + (self.local_gradient * local).sum()
-        bend = step @ (matrix + self.prior.matrix) @ step
+        matrix, gradient = self.of_all_tests
+        slope = gradient @ step + (self.local_gradient * local).sum()
+        bend = step @ matrix @ step
         bend += np.einsum("ti,tij,tj->", local, self.local_block, local)
         bend += 2.0 * np.einsum("ti,tik,k->", local, self.coupling_block, step)
         return float(-2.0 * slope - bend)
@@ -90,7 +97,7 @@ def normal_equations(
     own += REGULAR * (1.0 + own)
     global_block = np.einsum("tmk,tml->tkl", by_parameter, by_parameter)
     global_gradient = np.einsum("tmk,tm->tk", by_parameter, evaluation.residual)
-    own, std = np.zeros(model.size), model.uncertain.std
-    prior = Reduced(np.diag(np.r_[own, std**-2.0]), np.r_[own, evaluation.uncertain_prior / std])
+    none, std = np.zeros(model.size), model.uncertain.std
+    prior = Reduced(np.diag(np.r_[none, std**-2.0]), np.r_[none, evaluation.uncertain_prior / std])
     coupling = np.einsum("tmi,tmk->tik", by_nuisance, by_parameter)
     return NormalEquations(local, coupling, global_block, gradient, global_gradient, prior, eliminated)

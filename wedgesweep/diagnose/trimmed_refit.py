@@ -38,9 +38,10 @@ def refit_without_influential_tests(fit: Fit) -> Fit:
     rows = np.flatnonzero(~left_out)
     kept = subset_fit(fit, rows)
     trimmed = minimise(kept.model, kept.evaluation).point
-    nuisance, priors = model.data.as_stated(point).nuisance, model.nuisance_weight.shape[1]
+    stated, priors = model.data.as_stated(point), model.nuisance_weight.shape[1]
+    nuisance = stated.nuisance
     nuisance[rows, :priors] = trimmed.nuisance[:, :priors]
-    start = Point(trimmed.x, nuisance, point.warm.where(left_out, model.data.start()[1]))
+    start = Point(trimmed.x, nuisance, point.warm.where(left_out, stated.warm))
     again = minimise(model, model.evaluate(_at_best_nuisances(model, start, left_out)))
     return min(fit, again, key=lambda each: each.chi2)
 

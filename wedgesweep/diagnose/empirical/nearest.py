@@ -52,7 +52,7 @@ def nearest(found: ForceMap) -> list[Nearest]:
     forces = weight * np.concatenate([found.force.ravel()[None], found.force.ravel() + about])
     forces = _without(forces, weight)
     scatter = forces[1:] - forces[0]
-    # Errors add to the power of the force, and those of a draw once more.
+    # Errors add their own power to that of the force; a draw has those of the estimate, and its own.
     errors = np.r_[1.0, np.full(DRAWS, 2.0)]
     power = (forces**2).sum(axis=1) - errors * (scatter**2).sum(axis=1).mean()
     rows = []
