@@ -180,10 +180,13 @@ def test_umlauts_where_the_locale_has_none(here):
     """The locale C knows ASCII only; files are UTF-8 all the same."""
     (here / "prüfstand.toml").write_text(CONFIG.replace('"small"', '"Prüfstand µ"'), encoding="utf-8")
     environment = small_sweep.environment(LC_ALL="C", PYTHONUTF8="0", PYTHONCOERCECLOCALE="0")
-    command = small_sweep.command("check", "prüfstand.toml")
-    ended = subprocess.run(command, env=environment, capture_output=True, check=False)
-    assert ended.returncode == 0, ended.stderr
-    assert b"pr" in ended.stdout
+    for command, code in ((("status", "prüfstand.nc"), 2), (("check", "prüfstand.toml"), 0)):
+        words = small_sweep.command(*command)
+        ended = subprocess.run(words, env=environment, capture_output=True, check=False)
+        told = ended.stdout + ended.stderr
+        assert ended.returncode == code, told
+        assert b"Traceback" not in told
+        assert b"pr" in told
 
 
 def test_a_dataset_in_place_of_a_config_says_so(here):

@@ -479,6 +479,7 @@ def test_of_a_rotation_torques_and_angles_are_told(tmp_path):
     assert "differs from the base model's by 0.4 N m" in plain(page.text)
     assert "at 5.00 × 10⁻⁴ rad and 0.04 rad/s" in plain(page.text)
     assert "stiffness of the spring (N m/rad)" in page.text
+    assert rotation.prose("the force of 1 test (force.csv)") == "the torque of 1 test (force.csv)"
 
 
 @pytest.mark.usefixtures("no_figures")

@@ -40,7 +40,7 @@ WORDS = {
     **{"a displacement": "an angle", "displacement": "angle", "Displacement": "Angle"},
     **{"force": "torque", "Force": "Torque", "forces": "torques", "Forces": "Torques"},
 }
-_WORD = re.compile(rf"(?<![\w.-])(?:{'|'.join(sorted(WORDS, key=len)[::-1])})(?![\w-])")
+_WORD = re.compile(rf"(?<![\w.-])(?:{'|'.join(sorted(WORDS, key=len)[::-1])})(?![\w-]|\.\w)")
 _KEY = re.compile(rf"\b(?:{'|'.join([*KEYS, *(rf'[a-z_]+{ending}' for ending in ENDINGS)])})\b")
 _UNITS = "|".join(sorted(map(re.escape, UNITS), key=len)[::-1])
 _UNIT = re.compile(rf"(?<=[\[\d ])(?:{_UNITS})(?=[\],;. ]|$)")
@@ -104,7 +104,7 @@ def in_units(words: str) -> str:
 
 
 def prose(words: str) -> str:
-    """A text of a report or a figure in the words of a rotation; names and keys stay as they are.
+    """A text of a report or a figure in the words of a rotation; names of files and keys stay as they are.
 
     A unit by itself in brackets, as the meaning of a symbol has it, is that of a rotation, too.
     """

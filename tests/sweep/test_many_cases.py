@@ -107,7 +107,7 @@ def test_a_motion_is_timed_by_its_start(tmp_path, monkeypatch, each, samples):
     assert run == samples
 
 
-def test_numbers_of_a_long_list_take_few_calls_each():
+def test_numbers_of_a_long_list_take_two_calls_each():
     calls = {}
     for number in (1000, 100_000):
         values = np.linspace(0.1, 3.0, number).tolist()
@@ -115,7 +115,7 @@ def test_numbers_of_a_long_list_take_few_calls_each():
         calls[number], read = python_calls(lambda: config.from_document({"sweep": sweep}))  # noqa: B023
         assert read.sweep.case(number - 1) == Case("coulomb", 3.0, 1e-3)
         assert read.sweep.beta.tolist() == values
-    assert calls[100_000] - calls[1000] < 3 * 99_000
+    assert calls[100_000] - calls[1000] <= 2 * 99_000
 
 
 @pytest.mark.parametrize(

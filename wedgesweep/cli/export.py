@@ -24,7 +24,7 @@ UNITS = {"frequency": "Hz", "amplitude": "m"}
 COORDINATES = ("friction_law", "beta", "frequency", "amplitude", "scale")
 # Dimensions of waveforms.
 SAMPLED = ("phase", "time")
-# So many cases are turned into text at a time.
+# Number of cases that are turned into text at a time.
 AT_A_TIME = 10_000
 
 

@@ -17,7 +17,7 @@ DESCRIPTION = "a variable over any axis of the sweep (--x), --color and --facet 
 NEEDS = ("status",)
 ANY_AXES = True
 
-# So many colours a legend tells apart; more values have a colour bar.
+# A legend tells MOST_NAMED colours apart; more values have a colour bar.
 MOST_NAMED = 6
 # Marks of more cases would cover all lines; the title tells their share.
 MOST_MARKED = 5000

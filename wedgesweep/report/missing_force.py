@@ -56,9 +56,10 @@ def _nearest(force: dict[str, Any]) -> Markup:
 def _further(force: dict[str, Any]) -> str:
     place = " and ".join(phrases.size(force["next_place"], key) for key in force["next_place"])
     step = next(key for key in force if key.startswith("step_"))
-    friction = f"The friction at rest differs from the base model's by {phrases.size(force, step)}. "
+    differs = "The friction at rest differs from the base model's by"
+    friction = "" if force[step] is None else f"{differs} {phrases.size(force, step)}. "
     return (
-        f"{friction if force[step] is not None else ''}A further test would show most at {place}, where the "
+        f"{friction}A further test would show most at {place}, where the "
         f"force is known least. {FORCE_CONFIG} is the base model with this force ({FORCE_TABLE}), an "
         "ordinary config."
     )

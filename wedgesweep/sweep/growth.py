@@ -48,8 +48,9 @@ def _keys(config: Config, rows: Rows, indices: np.ndarray) -> Iterator[bytes]:
         cases = rows.cases(different)
         records = config.records(cases.ravel()).reshape(cases.shape)
         digests = [blake2b(row.tobytes(), digest_size=16).digest() for row in records]
-        for case, number in zip(some, numbers, strict=True):
-            yield digests[number] + int((cases[number] == case).argmax()).to_bytes(4)
+        places = some // rows.stride % rows.width
+        for number, place in zip(numbers.tolist(), places.tolist(), strict=True):
+            yield digests[number] + place.to_bytes(4)
 
 
 def records_of(ds: xr.Dataset, dtype: np.dtype) -> np.ndarray:

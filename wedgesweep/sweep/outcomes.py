@@ -62,7 +62,7 @@ class Outcomes:
 
     @property
     def lifted(self) -> int:
-        """Number of cases that were solved, but outside of the model's validity: bilateral joints pull."""
+        """Number of solved cases in which bilateral joints pull, outside of the model's validity."""
         return int(((self.status == Outcome.OK) & (self.lift_off_fraction > 0.0)).sum())
 
 
