@@ -1,4 +1,4 @@
-"""plot: figures of a dataset, or of a diagnosis."""
+"""plot: figures of a dataset, of a diagnosis, or of measured data."""
 
 import os
 from contextlib import nullcontext
@@ -13,17 +13,19 @@ from wedgesweep import figures
 from wedgesweep.cli.failure import Failure
 from wedgesweep.cli.messages import log
 from wedgesweep.cli.options import AT, DATASET, FiniteRange, GivenPath, axis_values, require_place_for
-from wedgesweep.figures import DESCRIPTIONS, FORMATS, diagnosis, samples, transient
+from wedgesweep.figures import DESCRIPTIONS, FORMATS, diagnosis, measured, samples, transient
+from wedgesweep.kinds import is_measured
 from wedgesweep.outcome import Outcome
 
 if TYPE_CHECKING:
     import numpy as np
     import xarray as xr
 
-    from wedgesweep.diagnosis_result import DiagnosisResult
+    from wedgesweep.figures import Data
 
 ALL = "all"
-OF_DATASETS = (*DESCRIPTIONS, *transient.DESCRIPTIONS, *samples.DESCRIPTIONS)
+FAMILIES = (DESCRIPTIONS, transient.DESCRIPTIONS, samples.DESCRIPTIONS, diagnosis.DESCRIPTIONS)
+KINDS = dict.fromkeys(name for family in (*FAMILIES, measured.DESCRIPTIONS) for name in family) | {ALL: None}
 # What drawing raises where a part of a diagnosis is missing or of another kind.
 DAMAGE = (LookupError, TypeError, AttributeError, AssertionError)
 # So many values are listed one by one.
@@ -35,7 +37,7 @@ def _table(descriptions: dict[str, str]) -> str:
     return "\n".join(f"  {kind:<16} {text}" for kind, text in descriptions.items())
 
 
-HELP = f"""Draw a figure of OUT: the dataset of a run, or the directory of a diagnosis.
+HELP = f"""Draw a figure of OUT: the dataset of a run, the directory of a diagnosis, or a measured.toml.
 
 \b
 For a dataset, KIND is one of
@@ -54,15 +56,19 @@ For the directory of a diagnosis, one of
 {_table(diagnosis.DESCRIPTIONS)}
 
 \b
-For both
+For a measured.toml
+{_table(measured.DESCRIPTIONS)}
+
+\b
+For all of them
   {ALL:<16} every figure that suits OUT
 """
 
 POSITIVE = FiniteRange(min=0.0, min_open=True)
 
 
-@click.command(help=HELP, short_help="Draw a figure of a dataset or a diagnosis.")
-@click.argument("kind", metavar="KIND", type=click.Choice([*OF_DATASETS, *diagnosis.DESCRIPTIONS, ALL]))
+@click.command(help=HELP, short_help="Draw a figure of a dataset, a diagnosis or measured data.")
+@click.argument("kind", metavar="KIND", type=click.Choice(KINDS))
 @DATASET
 @click.option(
     "-o",
@@ -121,7 +127,11 @@ def _beside(path: Path) -> Path:
     return path if path.is_dir() else path.parent
 
 
-def _read(path: Path) -> "xr.Dataset | DiagnosisResult":
+def _read(path: Path) -> "Data":
+    if path.suffix == ".toml" and is_measured(path):
+        from wedgesweep.measured import read
+
+        return read(path)
     from wedgesweep import diagnosis_result
 
     return diagnosis_result.read(path) if path.is_dir() else read_dataset(path)
@@ -149,7 +159,7 @@ class Pick(NamedTuple):
     unit: str
 
 
-def _options(found: "xr.Dataset | DiagnosisResult", picks: dict[str, Any]) -> dict[str, Any]:
+def _options(found: "Data", picks: dict[str, Any]) -> dict[str, Any]:
     """The picks that were given, in the units of the dataset; tell where it holds only their neighbours."""
     import xarray as xr
 
@@ -177,7 +187,7 @@ def _options(found: "xr.Dataset | DiagnosisResult", picks: dict[str, Any]) -> di
     return given
 
 
-def _values(found: "xr.Dataset | DiagnosisResult", texts: tuple[str, ...]) -> dict[str, float | str]:
+def _values(found: "Data", texts: tuple[str, ...]) -> dict[str, float | str]:
     """Values of axes out of texts such as "wedge_angle_deg=30", in the units of the dataset."""
     import xarray as xr
 
@@ -221,9 +231,7 @@ def _require_place(file: Path) -> None:
         raise Failure(message)
 
 
-def _draw_all(
-    found: "xr.Dataset | DiagnosisResult", directory: Path, suffix: str, options: dict[str, Any]
-) -> None:
+def _draw_all(found: "Data", directory: Path, suffix: str, options: dict[str, Any]) -> None:
     drawn = 0
     for kind in figures.of(found):
         try:
@@ -236,20 +244,20 @@ def _draw_all(
         raise Failure(message)
 
 
-def _draw(
-    kind: str, found: "xr.Dataset | DiagnosisResult", file: Path, options: dict[str, Any], strict: bool = True
-) -> None:
+def _draw(kind: str, found: "Data", file: Path, options: dict[str, Any], strict: bool = True) -> None:
     import numpy as np
-    import xarray as xr
+
+    from wedgesweep.diagnosis_result import DiagnosisResult
 
     picks = _accepted(kind, figures.options(figures.kind_of(found, kind)), options, strict)
     # Numbers that no diagnosis writes end in an error below.
-    handled = nullcontext() if isinstance(found, xr.Dataset) else np.errstate(all="ignore")
+    of_diagnosis = isinstance(found, DiagnosisResult)
+    handled = np.errstate(all="ignore") if of_diagnosis else nullcontext()
     try:
         with handled:
             figures.save(figures.draw(found, kind, **picks), file)
     except DAMAGE as error:
-        if isinstance(found, xr.Dataset):  # whose content has been checked
+        if not of_diagnosis:  # whose content has been checked
             raise
         message = (
             f"{kind}: diagnosis.json or diagnosis.nc is not as a diagnosis writes it "

@@ -1,18 +1,18 @@
 """Figures of a sweep's dataset and of a diagnosis, one figure per file.
 
 A file here (in ``transient/`` where the input does not repeat, in ``samples/`` of samples, in
-``diagnosis/``) that defines ``NAME``, ``DESCRIPTION`` and ``draw(target, data, **picks)`` is a figure; no
-list names it. ``NEEDS`` names the variables and attributes that it needs of a dataset. The keywords of
-``draw`` are the figure's options, in SI units as the dataset is; mm exist on axes only.
+``diagnosis/``, in ``measured/``) that defines ``NAME``, ``DESCRIPTION`` and ``draw(target, data, **picks)``
+is a figure; no list names it. ``NEEDS`` names the variables and attributes that it needs of a dataset. The
+keywords of ``draw`` are the figure's options, in SI units as the dataset is; mm exist on axes only.
 """
 
 import io
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from wedgesweep import rotation
-from wedgesweep.figures import catalogue, diagnosis, samples, transient
+from wedgesweep.figures import catalogue, diagnosis, measured, samples, transient
 from wedgesweep.files import written
 
 if TYPE_CHECKING:
@@ -21,6 +21,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure, SubFigure
 
     from wedgesweep.diagnosis_result import DiagnosisResult
+    from wedgesweep.measured import Measurement
+
+    Data: TypeAlias = xr.Dataset | DiagnosisResult | Measurement
 
 FORMATS = (".png", ".pdf", ".svg")
 DOTS_PER_INCH = 200
@@ -31,13 +34,14 @@ FIGURES = catalogue.declared(__path__[0], __name__)
 DESCRIPTIONS = {name: kind.description for name, kind in FIGURES.items()}
 
 
-def draw(data: "xr.Dataset | DiagnosisResult", name: str, ax: "Axes | None" = None, **picks: Any) -> "Figure":
-    """Draw one figure of a sweep's dataset or of a diagnosis.
+def draw(data: "Data", name: str, ax: "Axes | None" = None, **picks: Any) -> "Figure":
+    """Draw one figure of a sweep's dataset, of a diagnosis or of measured data.
 
     Parameters
     ----------
-    data : xarray.Dataset or DiagnosisResult
-        What ``wedgesweep run`` or ``wedgesweep diagnose`` left behind, as read from its files. A friction
+    data : xarray.Dataset, DiagnosisResult or Measurement
+        What ``wedgesweep run`` or ``wedgesweep diagnose`` left behind, as read from its files, or what
+        ``read_measurement`` returns. A friction
         law, beta or amplitude may have been selected from a dataset, as one value or as several.
     name : str
         Name of the figure: a key of ``figures.FIGURES``, or of ``figures.diagnosis.FIGURES``.
@@ -88,10 +92,13 @@ def draw(data: "xr.Dataset | DiagnosisResult", name: str, ax: "Axes | None" = No
     return whole
 
 
-def _turns(data: "xr.Dataset | DiagnosisResult") -> bool:
+def _turns(data: "Data") -> bool:
     """Whether the data are of an oscillator that turns."""
     from wedgesweep.diagnosis_result import DiagnosisResult
+    from wedgesweep.measured import Measurement
 
+    if isinstance(data, Measurement):
+        return data.model.turns
     attributes = data.data.attrs if isinstance(data, DiagnosisResult) else data.attrs
     return attributes.get("motion") == rotation.ROTATION
 
@@ -109,7 +116,7 @@ def options(kind: catalogue.FigureKind) -> tuple[str, ...]:
     """Names of the picks of a figure: a law of any dataset, and its own."""
     return (
         kind.picks
-        if kind.module.startswith(diagnosis.__name__)
+        if kind.module.startswith((diagnosis.__name__, measured.__name__))
         else tuple(dict.fromkeys((*kind.picks, LAW, AT)))
     )
 
@@ -121,18 +128,21 @@ def _require_known(picks: Mapping[str, Any], known: Sequence[str]) -> None:
             raise ValueError(message)
 
 
-def of(data: "xr.Dataset | DiagnosisResult") -> dict[str, catalogue.FigureKind]:
+def of(data: "Data") -> dict[str, catalogue.FigureKind]:
     """Return the figures that draw such data, by name."""
     from wedgesweep.diagnosis_result import DiagnosisResult
+    from wedgesweep.measured import Measurement
 
     if isinstance(data, DiagnosisResult):
         return diagnosis.FIGURES
+    if isinstance(data, Measurement):
+        return measured.FIGURES
     if "sample" in data.dims:
         return samples.FIGURES
     return transient.FIGURES if "scale" in data.coords else FIGURES
 
 
-def kind_of(data: "xr.Dataset | DiagnosisResult", name: str) -> catalogue.FigureKind:
+def kind_of(data: "Data", name: str) -> catalogue.FigureKind:
     """Return the figure of a name; raises ValueError if it does not draw such data."""
     kinds = of(data)
     if name not in kinds:
