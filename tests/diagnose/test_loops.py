@@ -24,6 +24,7 @@ from wedgesweep.diagnose.smoothing import (
 from wedgesweep.effects import merge
 from wedgesweep.errors import InputError
 from wedgesweep.measured import MeasuredError, read
+from wedgesweep.report.sentence import sentence
 from wedgesweep.solvers import imposed_motion
 
 OSCILLATOR = """
@@ -340,3 +341,25 @@ def test_a_jump_may_be_in_the_sample_before_it_or_after_it():
     variance = motion_noise.covariance(low_pass, places, 0.0, motion_noise.Derivatives(nothing, jumps))[0]
     assert variance == pytest.approx(variance[::-1], abs=1e-12)
     assert variance.argmax() in (59, 60)
+
+
+def test_a_cause_whose_size_differs_from_record_to_record_is_told_with_each_size(tmp_path):
+    forces, path = (2.0, 4.0), tmp_path / "measured.toml"
+    text, model = MEASURED, OSCILLATOR.replace("normal_force_N = 10.0", "normal_force_N = 0.0")
+    for i, force in enumerate(forces):
+        folder = tmp_path / str(i)
+        folder.mkdir()
+        write(folder, model, effects={"guide_friction": {"force": force}}, seed=i)
+        text += TEST.format(f"{i}/loop0")
+    path.write_text(text)
+    (tmp_path / "model.toml").write_text(model)
+    found = diagnosed(path, ["guide_friction", "viscous_damping"])
+    assert found.verdict == "none-of-mine"
+    apart, *_ = found.document["record_by_record"]
+    assert apart["effects"] == ["guide_friction"]
+    assert apart["accuracy"] < 0.1 * found.document["ladder"][1]["accuracy"]
+    for own, force in zip(apart["records"], forces, strict=True):
+        low, high = own["parameters"]["guide_friction.force_N"]["ci95"]
+        assert low < force < high
+        assert high - low < 0.2
+    assert "force 2, 4\N{NO-BREAK SPACE}N" in sentence(found)

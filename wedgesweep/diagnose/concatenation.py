@@ -262,6 +262,11 @@ class Concatenation(FitData):
         own = zip(self.layout.rows, self._each("held_out_groups"), strict=True)
         return [(scheme, rows.start + some) for rows, groups in own for scheme, some in groups]
 
+    @property
+    def tests_of_records(self) -> list[tuple[str, np.ndarray]]:
+        own = zip(self.layout.rows, self.parts, strict=True)
+        return [(name, rows.start + some) for rows, part in own for name, some in part.tests_of_records]
+
     def candidates(self, effects: Sequence[str]) -> tuple[str, ...]:
         """Effects that any of the parts can show."""
         shown = {name for own in self._each("candidates", effects) for name in own}

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 
-from wedgesweep.diagnose import forward, score_test, verdict, work
+from wedgesweep.diagnose import forward, record_by_record, score_test, verdict, work
 from wedgesweep.diagnose.calibration import calibrate
 from wedgesweep.diagnose.changes import Best, Change
 from wedgesweep.diagnose.concatenation import joined
@@ -21,6 +21,7 @@ from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.next_test.offer import NextTest
 from wedgesweep.diagnose.next_test.recommend import recommend
 from wedgesweep.diagnose.profile_likelihood import profile_likelihood
+from wedgesweep.diagnose.record_by_record import Apart
 from wedgesweep.diagnose.score_test import Score
 from wedgesweep.diagnose.search import OTHER_NUISANCES, Explained, Search, base_fit, quiet, single_fits
 from wedgesweep.diagnose.stages import PAIRS, REFINEMENT, explain, taken
@@ -63,7 +64,7 @@ class Diagnosis:
     fitted at all. ``unfinished``: steps without a result, with the reason; ``failed``: effects whose fits
     raised an error; ``ended``: the interrupt or time limit that ended the diagnosis early. ``changes``: what
     each stage changed; ``without``: stages that were left out; ``empirical``: the force that is missing where
-    no name explains it.
+    no name explains it; ``apart``: effects whose numbers differ from record to record.
     """
 
     measurement: Measurement
@@ -85,6 +86,7 @@ class Diagnosis:
     changes: tuple[Change, ...] = ()
     without: tuple[str, ...] = ()
     empirical: EmpiricalForce | None = None
+    apart: tuple[Apart, ...] = ()
 
     @property
     def best(self) -> Best:
@@ -305,6 +307,13 @@ def _with_more_effects(course: Course) -> Diagnosis:
     return replace(found, ladder=levels)
 
 
+def _with_records_apart(course: Course) -> Diagnosis:
+    found = course.found
+    if found.finding.verdict not in ABSTAINING or len(found.ladder) < 2:
+        return found
+    return replace(found, apart=record_by_record.record_by_record(course.search, found.ladder[1]))
+
+
 def _with_empirical_force(course: Course) -> Diagnosis:
     found = course.found
     if found.finding.verdict not in ABSTAINING and not course.empirical_force:
@@ -426,6 +435,7 @@ STEPS: dict[str, Callable[[Course], Diagnosis]] = {
     "held-out tests": _held_out,
     "accuracy": _rated,
     forward.NAME: _with_more_effects,
+    record_by_record.NAME: _with_records_apart,
     "empirical force": _with_empirical_force,
     "scores": _scored,
     "next test": _with_next_test,

@@ -217,6 +217,11 @@ class FitData(Protocol):
     def held_out_groups(self) -> list[tuple[str, np.ndarray]]:
         """Groups of tests to leave out in cross-validation: name of the scheme, and rows."""
 
+    @property
+    def tests_of_records(self) -> list[tuple[str, np.ndarray]]:
+        """Name of each record, and rows of its tests."""
+        return [(name, np.array([row])) for row, name in enumerate(self.names)]
+
     def candidates(self, effects: Sequence[str]) -> tuple[str, ...]:
         """Of some effects, those that the records can show at all."""
         return tuple(effects)

@@ -117,6 +117,11 @@ class SampledData(FitData):
         return [("block", rows) for rows in blocks]
 
     @property
+    def tests_of_records(self) -> list[tuple[str, np.ndarray]]:
+        rows = [np.flatnonzero(self.numbers == each) for each in np.unique(self.numbers)]
+        return [(self.names[own[0]].removesuffix(" 1"), own) for own in rows]
+
+    @property
     def observations(self) -> np.ndarray:
         return self.weight.sum(-1).astype(int)
 

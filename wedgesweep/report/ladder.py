@@ -1,6 +1,7 @@
 """The accuracy ladder: how well no effect, one, two and more explain the tests, as shares of the response."""
 
 from collections.abc import Mapping, Sequence
+from itertools import starmap
 from typing import Any
 
 from wedgesweep import formatting
@@ -34,6 +35,7 @@ def section(result: DiagnosisResult, draw: InlineFigures) -> Markup:
         draw("ladder"),
         html.table("The most accurate explanations", HEAD, rows, 2),
         _added(levels[3:]),
+        _record_by_record(result),
         html.paragraph(f"Noise floor: {phrases.accuracy(floor)}.") if floor else Markup(),
     )
 
@@ -45,6 +47,19 @@ def _added(further: Sequence[Mapping[str, Any]]) -> Markup:
     steps = [f"{level['effects'][-1]} ({held_out(level)})" for level in further]
     said = f"Added to the best pair one at a time, as long as tests left out gain: {', then '.join(steps)}."
     return html.paragraph(f"{said} More than two effects are never named.")
+
+
+def _record_by_record(result: DiagnosisResult) -> Markup:
+    """The numbers of explanations that differ from record to record."""
+    apart = result.document.get("record_by_record", [])
+    if not apart:
+        return Markup()
+    head = ("record", *(phrases.combination(each["effects"]) for each in apart))
+    rows = [
+        [own[0]["record"], *("; ".join(starmap(phrases.compact, one["parameters"].items())) for one in own)]
+        for own in zip(*(each["records"] for each in apart), strict=True)
+    ]
+    return html.table("Fitted to each record by itself (95 % intervals)", head, rows, 0)
 
 
 def _row(level: Mapping[str, Any]) -> list[str]:
@@ -67,7 +82,9 @@ def levels_of(result: DiagnosisResult) -> Sequence[Mapping[str, Any]]:
 def clauses(result: DiagnosisResult) -> list[str]:
     """What the best single effect explains, and the best pair where it is much better, as clauses."""
     levels = levels_of(result)
-    return [_clause(level, levels[0], result.document) for level in noteworthy(result)]
+    found = [_clause(level, levels[0], result.document) for level in noteworthy(result)]
+    apart = result.document.get("record_by_record", [])
+    return [*found, _apart(apart, result.document)] if apart else found
 
 
 def noteworthy(result: DiagnosisResult) -> list[Mapping[str, Any]]:
@@ -90,6 +107,23 @@ def held_out(level: Mapping[str, Any]) -> str:
     """How well an explanation predicts tests that it was not fitted to; empty if none were left out."""
     size = level.get("accuracy_held_out")
     return "" if size is None else f"held-out tests: {phrases.accuracy(size)}"
+
+
+def _apart(apart: Sequence[Mapping[str, Any]], document: Mapping[str, Any]) -> str:
+    """What explanations achieve with numbers of their own in each record."""
+    meaning = phrases.meanings(apart[0]["effects"], document)
+    each = "; next best, ".join(map(_numbers_of_records, apart[:2]))
+    return f"what differs from record to record may be {meaning}: fitted to each by itself, {each}"
+
+
+def _numbers_of_records(one: Mapping[str, Any]) -> str:
+    keys = one["records"][0]["parameters"]
+    numbers = [
+        phrases.numbers(key, [each["parameters"][key]["value"] for each in one["records"]]) for key in keys
+    ]
+    return (
+        f"{phrases.combination(one['effects'])} to {phrases.accuracy(one['accuracy'])} ({', '.join(numbers)})"
+    )
 
 
 def _clause(level: Mapping[str, Any], base: Mapping[str, Any], document: Mapping[str, Any]) -> str:

@@ -62,6 +62,12 @@ def estimate(key: str, fitted: Mapping[str, Any]) -> str:
     return f"{name} {with_unit(text.value, unit)}, {INTERVAL} {text.low} to {with_unit(text.high, unit)}"
 
 
+def numbers(key: str, values: Sequence[float | None]) -> str:
+    """Numbers of several records in a row."""
+    name, unit = split_key(key)
+    return f"{name} {with_unit(', '.join(formatting.short(value, 3) for value in values), unit)}"
+
+
 def compact(key: str, fitted: Mapping[str, Any]) -> str:
     """A fitted parameter with its interval in brackets, for a table whose head says so."""
     name, unit = split_key(key)

@@ -17,6 +17,7 @@ from wedgesweep.diagnose.explanation import ADEQUATE, POSSIBLE, Explanation, par
 from wedgesweep.diagnose.ladder import Level, Rated
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.next_test.offer import SEPARATED, NextTest
+from wedgesweep.diagnose.record_by_record import Apart
 from wedgesweep.diagnose.result import missing_force
 from wedgesweep.diagnose.result.estimates import finite, parameters, uncertain
 from wedgesweep.diagnose.verdict import LARGER, p_where_it_shows
@@ -50,6 +51,7 @@ def document(found: Diagnosis) -> dict[str, Any]:
         "excluded": excluded_effects(found.measurement),
         "next_test": _next_test(found.next_test),
         "ladder": [_level(each) for each in found.ladder],
+        "record_by_record": [_apart(each) for each in found.apart],
         "empirical_force": missing_force.document(found.empirical),
         "extended": list(best.effects),
         "never_steady": _never_steady(best.fit),
@@ -223,6 +225,17 @@ def _rated(each: Rated) -> dict[str, Any]:
     return {"effects": list(each.effects), "accuracy": finite(each.accuracy)}
 
 
+def _apart(each: Apart) -> dict[str, Any]:
+    """An explanation whose numbers differ from record to record."""
+    records = [{"record": name, "parameters": _by_name(parameters(fit))} for name, fit in each.fits]
+    return {"effects": list(each.effects), "accuracy": finite(each.accuracy), "records": records}
+
+
+def _by_name(numbers: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
+    """Estimates by "effect.key"."""
+    return {f"{name}.{key}": value for name, own in numbers.items() for key, value in own.items()}
+
+
 def _method(found: Diagnosis) -> dict[str, Any]:
     return {
         "penalty_per_parameter": parameter_penalty(found.data),
@@ -256,9 +269,7 @@ def _candidates(found: Diagnosis, hidden: Sequence[str]) -> list[dict[str, Any]]
                 "p": finite(each.fit.p),
                 "penalised": finite(each.penalised),
                 "accuracy": finite(accuracies.get(each.effects)),
-                "parameters": {
-                    f"{name}.{key}": value for name, own in numbers.items() for key, value in own.items()
-                },
+                "parameters": _by_name(numbers),
                 "score": None if score is None else finite(score.t2),
                 "retention": None if score is None else finite(score.retention),
                 "status": status,
