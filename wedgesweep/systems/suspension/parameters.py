@@ -45,6 +45,7 @@ SUSPENSION = (
     ),
     Quantity("wedge_preload_N", 0.0, "force of each wedge spring at z = 0"),
     Quantity("gravity_m_per_s2", 9.80665, "acceleration of gravity", minimum=0.0),
+    Quantity("wear_mm", 0.0, "wear of each column face", minimum=0.0),
 )
 
 # Numbers that follow from the others.
@@ -169,12 +170,18 @@ def record(
     nominal = p["suspension"].copy()
     records.set_common(case, law, friction, (amplitude, omega))
     records.set_effects(p, names, effects)
+    p["suspension"]["wedge_preload"] -= p["suspension"]["wedge_spring"] * rise_by_wear(p["suspension"])
     acting = records.acting(p, names)
     p["geometry"]["kit"], p["geometry"]["opens"] = _kit_of(p, acting), has_unilateral_joints(p)
     if _needs_regularisation(p, acting):
         _regularise(p, nominal)
     prepare(case, acting)
     return case
+
+
+def rise_by_wear(s: np.ndarray | np.void) -> np.ndarray:
+    """Rise (m) of wedges along the bolster face, until they close the gaps of worn columns; any shape."""
+    return s["wear"] * np.cos(s["wedge_angle"]) / np.sin(s["wedge_angle"] + s["column_angle"])
 
 
 def has_unilateral_joints(rows: np.ndarray | np.void) -> np.ndarray:
