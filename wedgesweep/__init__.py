@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from wedgesweep.api import (
         diagnose_measurement,
+        engineering,
         load_config,
         plot,
         read_measurement,
@@ -14,7 +15,15 @@ if TYPE_CHECKING:
     )
 
 __version__ = "0.1.0"
-__all__ = ["diagnose_measurement", "load_config", "plot", "read_measurement", "run_sweep", "simulate_case"]
+__all__ = [
+    "diagnose_measurement",
+    "engineering",
+    "load_config",
+    "plot",
+    "read_measurement",
+    "run_sweep",
+    "simulate_case",
+]
 
 # Messages are shown to those who ask for them: logging.getLogger("wedgesweep").
 logging.getLogger(__name__).addHandler(logging.NullHandler())

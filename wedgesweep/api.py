@@ -182,6 +182,37 @@ def run_sweep(
     )
 
 
+def engineering(ds: xr.Dataset) -> xr.Dataset:
+    """Add the engineer's quantities to the dataset of a sweep: loads, friction forces, losses, unloading.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        From ``run_sweep`` or ``simulate_case``, of a suspension; cases may have been selected.
+
+    Returns
+    -------
+    xarray.Dataset
+        The same with the quantities of docs/api.md, a number for each case in SI units. Forces on faces and
+        unloading need stored waveforms, losses a cycle an input that repeats. NaN: a case failed, nothing
+        moves, or (friction forces) the wedges lock.
+
+    Raises
+    ------
+    ValueError
+        The dataset is one of an oscillator.
+
+    Examples
+    --------
+    >>> import wedgesweep as ws
+    >>> ds = ws.engineering(ws.run_sweep(ws.load_config("configs/wear.toml")))  # doctest: +SKIP
+    >>> ds["relative_friction"].sel(wear_mm=6.0)  # doctest: +SKIP
+    """
+    from wedgesweep import engineering_quantities
+
+    return engineering_quantities.engineering(ds)
+
+
 def read_measurement(path: str | Path, model: str | Path | None = None) -> Measurement:
     """Read measured vibration, and the model that it is to be compared with.
 

@@ -1,6 +1,13 @@
-"""Units of recorded channels."""
+"""Units of recorded channels, and those in which datasets are shown."""
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 INCH, FOOT, POUND, GRAVITY = 0.0254, 0.3048, 4.4482216152605, 9.80665
+# Mass of a pound (kg).
+POUND_MASS = 0.45359237
 PREFIXES = {"n": 1e-9, "u": 1e-6, "m": 1e-3, "c": 1e-2, "k": 1e3, "M": 1e6}
 TURN = 6.283185307179586
 # Units of time whose zero is a date: ISO 8601 texts, serial days of Excel, seconds since 1970.
@@ -87,3 +94,42 @@ def usual(unit: str) -> str:
 def is_unit(word: str) -> bool:
     """Whether a word, in its usual spelling, is a unit of anything."""
     return word in FOREIGN or any(word in units for units in UNITS.values())
+
+
+# Systems of units in which a dataset is shown: for a unit of SI the one in its place, and its size in SI.
+_US = {"m": ("in", INCH), "mm": ("in", 1e3 * INCH), "kg": ("lb", POUND_MASS)}
+SI = "si"
+SYSTEMS: dict[str, dict[str, tuple[str, float]]] = {
+    SI: {},
+    "us": {**_US, "N": ("lbf", POUND), "J": ("in lbf", INCH * POUND)},
+    "us-kip": {**_US, "N": ("kip", 1e3 * POUND), "J": ("in kip", 1e3 * INCH * POUND)},
+}
+
+# Units that a dataset has in none but these.
+CUSTOMARY = {unit for system in SYSTEMS.values() for unit, _ in system.values()}
+
+
+def in_system(ds: "xr.Dataset", name: str) -> "xr.Dataset":
+    """A dataset in one of SYSTEMS, its coordinates as well; what has no unit of that system stays."""
+    if name == SI:
+        return ds
+    shown: dict[Any, Any] = dict(ds.variables)
+    for each, values in ds.variables.items():
+        unit, size = _unit_in(str(values.attrs.get("units", "1")), SYSTEMS[name])
+        if size != 1.0:
+            shown[each] = (values.dims, values.values / size, values.attrs | {"units": unit})
+    # All coordinates anew, so that they keep their order.
+    coords = {each: shown.pop(each) for each in ds.coords}
+    return ds.assign_coords(coords).assign(shown)
+
+
+def _unit_in(unit: str, system: dict[str, tuple[str, float]]) -> tuple[str, float]:
+    """A unit as CF writes it, such as N mm-1, in another system, and its size in the given one."""
+    parts, size = [], 1.0
+    for part in unit.split():
+        symbol = part.rstrip("-0123456789")
+        power = part.removeprefix(symbol)
+        other, own = system.get(symbol, (symbol, 1.0))
+        parts.append(other + power)
+        size *= own ** int(power or 1)
+    return " ".join(parts), size

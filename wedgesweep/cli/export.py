@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING
 import click
 
 from wedgesweep.cli.failure import Failure
-from wedgesweep.cli.options import DATASET, STANDARD_OUTPUT, OutputPath
+from wedgesweep.cli.options import DATASET, STANDARD_OUTPUT, UNITS, OutputPath
 from wedgesweep.cli.plot import read_dataset
 from wedgesweep.files import CSV, written
 from wedgesweep.formatting import counted
+from wedgesweep.units import in_system
 
 if TYPE_CHECKING:
     import numpy as np
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
 
 
 # Units of coordinates where a dataset that passed through other hands does not state them.
-UNITS = {"frequency": "Hz", "amplitude": "m"}
+STATED = {"frequency": "Hz", "amplitude": "m"}
 COORDINATES = ("friction_law", "beta", "frequency", "amplitude", "scale")
 # Dimensions of waveforms.
 SAMPLED = ("phase", "time")
@@ -37,17 +38,23 @@ AT_A_TIME = 10_000
     help="CSV file to write, - to print; default: OUT's name with .csv, in the current directory.",
 )
 @click.option(
-    "--variables", metavar="A,B,...", help="Variables to write; default: all with one value a case."
+    "--variables",
+    metavar="A,B,...",
+    help="Variables to write, also the engineer's quantities of docs/api.md; default: all of OUT with one "
+    "value a case.",
 )
-def export(path: Path, output: Path | None, variables: str | None) -> None:
+@UNITS
+def export(path: Path, output: Path | None, variables: str | None, units: str) -> None:
     """Write the dataset OUT as CSV, a row for each case.
 
-    Numbers are in SI units, which the header states. Cases that failed have their status and message, and no
+    The header states the units of the numbers. Cases that failed have their status and message, and no
     numbers. Cases that an unfinished run has not solved yet have the status not_run.
     """
     ds = read_dataset(path)
     chosen = None if variables is None else [name.strip() for name in variables.split(",") if name.strip()]
-    rows = _rows(ds, _variables_of(ds, chosen))
+    if not {*(chosen or ())} <= set(ds.variables):
+        ds = _with_quantities(ds, chosen or ())
+    rows = _rows(in_system(ds, units), _variables_of(ds, chosen))
     file = output or Path(f"{path.stem}.csv")
     if file == STANDARD_OUTPUT:
         for some in rows:
@@ -57,6 +64,15 @@ def export(path: Path, output: Path | None, variables: str | None) -> None:
         for some in rows:
             stream.write(_text(some))
     click.echo(f"wrote {file}: {counted(ds['status'].size, 'case')}")
+
+
+def _with_quantities(ds: "xr.Dataset", names: Sequence[str]) -> "xr.Dataset":
+    from wedgesweep import engineering_quantities
+
+    try:
+        return engineering_quantities.with_quantities(ds, names)
+    except ValueError as error:
+        raise Failure(str(error)) from error
 
 
 def _text(rows: list[list[str]]) -> str:
@@ -108,7 +124,7 @@ def _columns(ds: "xr.Dataset", name: str) -> "Iterator[tuple[str, np.ndarray]]":
     """Header and values, shape (cases,), of the columns of a variable."""
     dims = ds["status"].dims
     given = ds[name]
-    unit = given.attrs.get("units", UNITS.get(name, "1"))
+    unit = given.attrs.get("units", STATED.get(name, "1"))
     bracket = "" if unit in ("", "1") else f" [{unit}]"
     inner = [dim for dim in given.dims if dim not in dims]
     meanings = _meanings_of(given)

@@ -13,6 +13,7 @@ import click
 from wedgesweep.cli.failure import Failure
 from wedgesweep.files import mismatch, replaceable
 from wedgesweep.kinds import confusion
+from wedgesweep.units import SI, SYSTEMS
 
 
 class GivenPath(click.Path):
@@ -68,6 +69,15 @@ PLUGIN = click.option(
     callback=_load_plugins,
     metavar="FILE",
     help="Python file with an effect of your own (docs/extending.md); may be repeated.",
+)
+
+
+UNITS = click.option(
+    "--units",
+    type=click.Choice(list(SYSTEMS)),
+    default=SI,
+    show_default=True,
+    help="Units of the numbers: SI; us: in, lb, lbf; us-kip: with forces in kip.",
 )
 
 

@@ -12,10 +12,11 @@ from click.core import ParameterSource
 from wedgesweep import figures
 from wedgesweep.cli.failure import Failure
 from wedgesweep.cli.messages import log
-from wedgesweep.cli.options import AT, DATASET, FiniteRange, GivenPath, axis_values, require_place_for
+from wedgesweep.cli.options import AT, DATASET, UNITS, FiniteRange, GivenPath, axis_values, require_place_for
 from wedgesweep.figures import DESCRIPTIONS, FORMATS, diagnosis, measured, samples, transient
 from wedgesweep.kinds import is_measured
 from wedgesweep.outcome import Outcome
+from wedgesweep.units import SI
 
 if TYPE_CHECKING:
     import numpy as np
@@ -98,6 +99,7 @@ POSITIVE = FiniteRange(min=0.0, min_open=True)
 @click.option("--facet", metavar="AXIS", help="Axis with a panel for each value.")
 @click.option("--variable", metavar="NAME", help="Variable to draw, as in OUT.")
 @AT
+@UNITS
 @click.pass_context
 def plot(ctx: click.Context, kind: str, path: Path, output: Path | None, suffix: str, **picks: Any) -> None:
     """Draw a figure."""  # the text of --help is HELP
@@ -164,6 +166,10 @@ def _options(found: "Data", picks: dict[str, Any]) -> dict[str, Any]:
     import xarray as xr
 
     given = {name: value for name, value in picks.items() if value not in (None, ())}
+    # Figures with units of their own do not take the option.
+    if given.get("units") == SI:
+        del given["units"]
+
     if "at" in given:
         given["at"] = _values(found, given["at"])
     if not isinstance(found, xr.Dataset):

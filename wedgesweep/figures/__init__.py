@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 from wedgesweep import rotation
 from wedgesweep.figures import catalogue, diagnosis, measured, samples, transient
 from wedgesweep.files import written
+from wedgesweep.units import SI, in_system
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -29,6 +30,8 @@ FORMATS = (".png", ".pdf", ".svg")
 DOTS_PER_INCH = 200
 # The picks that figures of all datasets share: a law, and values of axes by name.
 LAW, AT = "law", "at"
+# One more of figures over any axes: a system of units.SYSTEMS.
+UNITS = "units"
 
 FIGURES = catalogue.declared(__path__[0], __name__)
 DESCRIPTIONS = {name: kind.description for name, kind in FIGURES.items()}
@@ -51,7 +54,8 @@ def draw(data: "Data", name: str, ax: "Axes | None" = None, **picks: Any) -> "Fi
     **picks
         Options of the figure, by the names that ``figures.FIGURES[name].picks`` lists: ``beta`` (frequency
         ratio), ``amplitude`` or ``amplitudes`` (m) of a dataset, ``tests`` (indices) of a diagnosis; and
-        ``law`` and ``at`` (values of axes by name) of any dataset. The nearest values that the data hold are
+        ``law`` and ``at`` (values of axes by name) of any dataset, ``units`` (``"us"``, ``"us-kip"``) where
+        figures are over any axes. The nearest values that the data hold are
         drawn, if they are near.
 
     Returns
@@ -74,8 +78,7 @@ def draw(data: "Data", name: str, ax: "Axes | None" = None, **picks: Any) -> "Fi
         _require_known(picks, options(kind))
         checked = data
         if isinstance(data, xr.Dataset):
-            if not kind.any_axes:
-                data = models.of_one(data, picks.pop(AT, {}))
+            data = _to_be_drawn(data, picks) if kind.any_axes else models.of_one(data, picks.pop(AT, {}))
             checked = cases.checked(data, kind.needs, kind.case_lists)
             if (law := picks.pop(LAW, None)) is not None:
                 checked = cases.of_law(checked, law)
@@ -90,6 +93,22 @@ def draw(data: "Data", name: str, ax: "Axes | None" = None, **picks: Any) -> "Fi
     if _turns(data):
         _relabel(panels.figure)
     return whole
+
+
+def _to_be_drawn(ds: "xr.Dataset", picks: dict[str, Any]) -> "xr.Dataset":
+    """The dataset with the variable that is asked for, in the units that are; takes picks away."""
+    if (variable := picks.get("variable", "status")) not in ds:
+        from wedgesweep.engineering_quantities import OF_MODEL, with_quantities
+
+        ds = with_quantities(ds, [variable])
+        if variable in OF_MODEL:  # then no motion is to be read with care
+            ds = ds.drop_vars(["lift_off_fraction", "periodicity"], errors="ignore")
+    if (system := picks.pop(UNITS, SI)) == SI:
+        return ds
+    from wedgesweep.figures import models
+
+    # Values of axes are picked in the units of the dataset.
+    return in_system(models.at_values(ds, picks.pop(AT, {})), system)
 
 
 def _turns(data: "Data") -> bool:
@@ -117,7 +136,7 @@ def options(kind: catalogue.FigureKind) -> tuple[str, ...]:
     return (
         kind.picks
         if kind.module.startswith((diagnosis.__name__, measured.__name__))
-        else tuple(dict.fromkeys((*kind.picks, LAW, AT)))
+        else tuple(dict.fromkeys((*kind.picks, LAW, AT, *([UNITS] if kind.any_axes else ()))))
     )
 
 

@@ -1,13 +1,14 @@
 """What axes and titles call the motion and the input of a dataset: those of its system."""
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import xarray as xr
 
 from wedgesweep.figures import style
 from wedgesweep.friction import LAWS
+from wedgesweep.units import CUSTOMARY
 
 SUSPENSION = "side frame minus bolster"
 OSCILLATOR = "oscillator"
@@ -28,7 +29,8 @@ class Labels:
 
     ``motion`` and ``rate`` are the symbols of what was recorded, ``whose`` says in words what it is, and
     ``sign`` how to read it. ``scale`` and ``reference`` are symbol and words of what motions are compared
-    with. ``forced``: a force is the input.
+    with. ``forced``: a force is the input, whose amplitude has the ``unit``; ``factor`` turns the dataset's
+    number into it.
     """
 
     motion: str
@@ -42,16 +44,8 @@ class Labels:
     body: str = "bolster"
     base: str = "side frame"
     positive: str = "positive upwards"
-
-    @property
-    def unit(self) -> str:
-        """Unit of the input amplitude."""
-        return "N" if self.forced else "mm"
-
-    @property
-    def factor(self) -> float:
-        """What turns an input amplitude of the dataset (m or N) into its unit."""
-        return 1.0 if self.forced else style.MM
+    unit: str = "mm"
+    factor: float = style.MM
 
     @property
     def symbol(self) -> str:
@@ -100,7 +94,7 @@ class Labels:
         return "the force" if self.forced else f"the {self.base}"
 
     def size(self, amplitude: float, digits: int) -> str:
-        """Write an input amplitude (m or N) with its unit."""
+        """Write an input amplitude of the dataset with its unit."""
         return f"${self.symbol}$ = {amplitude * self.factor:.{digits}g} {self.unit}"
 
 
@@ -109,7 +103,9 @@ WEDGE = Labels("x-y", "x'-y'", SUSPENSION, style.SIGN, "a", "the input amplitude
 
 def of(ds: xr.Dataset) -> Labels:
     """Return the labels of the dataset of a sweep or a diagnosis."""
-    return _of_oscillator(ds.attrs) if ds.attrs.get("system") == OSCILLATOR else WEDGE
+    words = _of_oscillator(ds.attrs) if ds.attrs.get("system") == OSCILLATOR else WEDGE
+    shown = ds["amplitude"].attrs.get("units") if "amplitude" in ds.coords else None
+    return replace(words, unit=shown, factor=1.0) if shown in CUSTOMARY else words
 
 
 def _of_oscillator(attributes: Mapping[str, Any]) -> Labels:
@@ -131,6 +127,7 @@ def _of_oscillator(attributes: Mapping[str, Any]) -> Labels:
         "mass",
         "base",
         f"positive along ${motion}$",
+        *(("N", 1.0) if forced else ("mm", style.MM)),
     )
 
 

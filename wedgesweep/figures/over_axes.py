@@ -1,12 +1,14 @@
 """What figures over any axes share: which axis is which, names and units, and everything else picked."""
 
 from collections.abc import Mapping
+from math import nan
 from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
 
 from wedgesweep.figures import cases, labels, models, style
+from wedgesweep.quantity import Quantity
 
 MOST_PANELS = 6
 UNITS = {"degree": "deg"}
@@ -96,7 +98,8 @@ def written(ds: xr.Dataset, name: str, value: Any) -> str:
     if name == "amplitude":
         return labels.of(ds).size(float(value), 4)
     units = "" if unit(ds, name) == "1" else unit(ds, name)
-    return f"{name.replace('_', ' ').removesuffix(f' {units}')} {float(value):.4g} {units}".rstrip()
+    words = Quantity(name, nan, "").name.replace("_", " ")
+    return f"{words} {float(value):.5g} {units}".rstrip()
 
 
 def picked(ds: xr.Dataset, layout: Layout) -> str:
