@@ -69,7 +69,8 @@ def in_process(words):
 @pytest.mark.acceptance
 def test_the_tutorial_runs(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    shutil.copytree(ROOT / "examples", "examples")
+    for folder in ("examples", "configs"):
+        shutil.copytree(ROOT / folder, folder)
     told, runs = {}, []
     for words in command_lines(TUTORIAL, quoted=False):
         if words[1] == "model.toml":
@@ -94,8 +95,9 @@ def test_the_tutorial_runs(tmp_path, monkeypatch):
     assert [cause["effect"] for cause in hypotheses["causes"]] == ["cubic_stiffness"]
     tried = {name: each["accuracy"] for each in hypotheses["candidates"] for name in each["effects"][:1]}
     assert tried["cubic_stiffness"] < tried["quintic_stiffness"] < 0.1
-    assert "verified by Radau at rtol 1e-09: 3 cases out of 450" in told["run"]
+    assert "verified by Radau at rtol 1e-09: 3 cases out of 450" in runs[-2]
     assert len(Path("study.csv").read_text().splitlines()) == 451
+    assert len(Path("wear.csv").read_text().splitlines()) == 101
     import xarray as xr
 
     with xr.open_dataset("study.nc") as ds:
