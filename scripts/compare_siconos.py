@@ -1,7 +1,8 @@
 """Cases with lift-off against siconos (Moreau-Jean time stepping), extrapolated to a step of zero.
 
-    .venv/bin/python scripts/compare_siconos.py [number of cases]
+    .venv/bin/python scripts/compare_siconos.py [number of cases [force of a wedge's spring, N]]
 
+With a force damping is constant: the springs of the wedges stand on the bolster.
 Needs Debian's python3-siconos. Errors of time stepping fall with the step, but unevenly, as impacts come
 between two steps: of the lines through two of the results the median at zero is taken. Steps must be short
 for that: from 800 to 2,000 a period differences of up to 0.3 % remain, which shrink in proportion to the step
@@ -31,6 +32,7 @@ SETTLED = 1e-4
 STUDY = """
 [suspension]
 joints = "unilateral"
+{damping}
 [sweep]
 friction_law = ["coulomb"]
 beta = [0.75, 0.8, 0.85, 0.9, 0.95, 1.0, 1.05, 1.1, 1.15, 1.2, 1.25, 1.3]
@@ -43,9 +45,10 @@ kept_periods = 2
 """
 
 
-def solved():
+def solved(preload):
     """Records of the study's cases that lift off and have settled in the same window, and their cases."""
-    study = config.parse(STUDY)
+    damping = f'damping = "constant"\nwedge_preload_N = {preload}' if preload else ""
+    study = config.parse(STUDY.format(damping=damping))
     dtype = variables.record_dtype({"phase": 0, "harmonic": variables.HARMONICS, "part": 2})
     rows = study.records()
     found = solve_cases(rows, np.arange(len(rows)), study.solver, inf, dtype)
@@ -59,9 +62,9 @@ def is_there():
     return Path(PYTHON).exists() and subprocess.run(command, capture_output=True, check=False).returncode == 0
 
 
-def siconos(cases, steps):
+def siconos(cases, steps, preload):
     """Amplitude ratio and open shares of cases, shape (n, 3), and the processor time (s)."""
-    window = {"restitution": 0.0, "settle": SETTLE, "keep": KEEP, "steps": steps}
+    window = {"restitution": 0.0, "settle": SETTLE, "keep": KEEP, "steps": steps, "preload": preload}
     given = [{"beta": case.beta, "amplitude": case.amplitude, **window} for case in cases]
     with tempfile.TemporaryDirectory() as folder:
         out = Path(folder) / "results.json"
@@ -88,12 +91,13 @@ def extrapolated(runs):
 def main() -> None:
     """Print the comparison."""
     number = int(sys.argv[1]) if len(sys.argv) > 1 else 30
+    preload = float(sys.argv[2]) if len(sys.argv) > 2 else 0.0
     began = process_time()
-    records, cases = solved()
+    records, cases = solved(preload)
     print(f"wedgesweep: {len(cases)} cases, {process_time() - began:.2f} s of processor time")
     chosen = np.unique(np.linspace(0, len(cases) - 1, number).astype(int))
     cases, records = [cases[i] for i in chosen], records[chosen]
-    runs = np.array([siconos(cases, steps)[0] for steps in STEPS])
+    runs = np.array([siconos(cases, steps, preload)[0] for steps in STEPS])
     limit = extrapolated(runs)
     names = "amplitude_ratio", "column_open_fraction", "bolster_open_fraction"
     own = np.array([records[name] for name in names]).T

@@ -33,23 +33,36 @@ def relations():
     return column, bolster
 
 
-def equilibrium():
-    """Displacements of wedge and bolster at the frictionless equilibrium."""
+def springs(preload):
+    """Stiffness of the springs, and their forces at zero, on wedge (x, z) and bolster.
+
+    With a ``preload`` (N) the wedge's spring stands on the bolster (constant damping), else on the side
+    frame.
+    """
+    lengthens = np.array([0.0, 1.0, -1.0 if preload else 0.0])
+    stiffness = np.diag([0.0, 0.0, BOLSTER_SPRING]) + WEDGE_SPRING * np.outer(lengthens, lengthens)
+    return stiffness, preload * lengthens
+
+
+def equilibrium(stiffness, force):
+    """Displacements of wedge and bolster at the frictionless equilibrium, under a force on each."""
     ratio = sin(ALPHA) / sin(ALPHA + GAMMA)
-    rise = ratio * cos(GAMMA)
-    z = -GRAVITY * (BOLSTER + WEDGE * rise) / (BOLSTER_SPRING + WEDGE_SPRING * rise**2)
-    return np.array([-ratio * z * sin(GAMMA), rise * z, z])
+    path = np.array([-ratio * sin(GAMMA), ratio * cos(GAMMA), 1.0])
+    return path * (path @ force) / (path @ stiffness @ path)
 
 
-def run(beta, amplitude, restitution, settle, keep, steps):
+def run(beta, amplitude, restitution, settle, keep, steps, preload=0.0):
     """Amplitude ratio, and shares of time with column and bolster contact open."""
-    omega, rest = beta * OMEGA_N, equilibrium()
+    omega, masses = beta * OMEGA_N, np.array([WEDGE, WEDGE, BOLSTER])
+    stiffness, force = springs(preload)
+    up = masses * [0.0, 1.0, 1.0]
+    rest = equilibrium(stiffness, force - GRAVITY * up)
     step, count = 2.0 * pi / omega / steps, (settle + keep) * steps
     body = kernel.LagrangianLinearTIDS(
         rest,
         np.zeros(3),
-        np.diag([WEDGE, WEDGE, BOLSTER]),
-        np.diag([0.0, WEDGE_SPRING, BOLSTER_SPRING]),
+        np.diag(masses),
+        stiffness,
         np.zeros((3, 3)),
     )
     law = kernel.NewtonImpactFrictionNSL(restitution, restitution, MU, 2)
@@ -64,7 +77,7 @@ def run(beta, amplitude, restitution, settle, keep, steps):
     kept = np.empty((keep * steps, 3))
     for i in range(count):
         down = GRAVITY - amplitude * omega**2 * sin(omega * (i + THETA) * step)
-        body.setFExtPtr([0.0, -WEDGE * down, -BOLSTER * down])
+        body.setFExtPtr((force - down * up).tolist())
         stepping.computeOneStep()
         if i >= count - len(kept):
             impulses = [contact.lambda_(1)[0] for contact in contacts]

@@ -243,6 +243,16 @@ def test_what_unilateral_joints_do_not_go_with(text, path, hint):
     assert hint in found
 
 
+def test_constant_damping_needs_the_force_of_its_springs():
+    text = SWEEP + '[suspension]\ndamping = "constant"\n'
+    found = problem(text)
+    assert found.startswith("study.toml: suspension.wedge_preload_N: 0 presses no wedge")
+    assert "greater than 0" in found
+    assert "variable, constant" in problem(text.replace("constant", "fixed"))
+    case = config.parse(text + "wedge_preload_N = 4.0\n").records(np.array([0]))
+    assert case["geometry"]["spring_on_bolster"] == 1.0
+
+
 def test_unilateral_joints_need_an_angle_and_friction_that_does_not_grow():
     law = SWEEP.replace("coulomb", "exponential")
     joints = '[suspension]\njoints = "unilateral"\ncolumn_angle_deg = 0.0\n[friction]\nstatic = 0.2\n'

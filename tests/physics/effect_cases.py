@@ -151,7 +151,8 @@ def residual(t, y, mode, p, result):
     base = base_acceleration(t, p)
     frame = base + result.frame_acceleration
     moved = wedge(result.acceleration, result.column_acceleration)
-    spring = s["wedge_preload"] - s["wedge_spring"] * (wedge(z, way) @ up)
+    pocket = p["geometry"]["spring_on_bolster"]  # constant damping: shorter by the bolster's rise
+    spring = s["wedge_preload"] - s["wedge_spring"] * (wedge(z, way) @ up - pocket * z)
     on_column = result.column * into_column + friction(column_mu, result.column) * along_column
     on_bolster = result.bolster * into_wedge - friction(bolster_mu, result.bolster) * along_bolster
     weight = s["wedge_mass"] * s["gravity"]
@@ -174,6 +175,7 @@ def residual(t, y, mode, p, result):
         - s["bolster_spring"] * np.clip(x, -p["backlash"]["clearance"], p["backlash"]["clearance"])
         + p["guide_friction"]["force"] * guide
         + 2 * on_bolster @ up
+        + 2 * pocket * spring
     )
     column = 0.0
     if p["column_compliance"]["stiffness"] > 0.0:

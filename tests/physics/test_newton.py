@@ -36,13 +36,13 @@ def random_states(law, column_angle, number, seed=1):
         yield record, generator.uniform(0, 10), (generator.uniform(-5e-3, 5e-3), velocity)
 
 
-def record_of(law, generator, names, column_angle=0.07):
+def record_of(law, generator, names, column_angle=0.07, **suspension):
     place = generator.uniform(0.05, 0.95)
     return parameters.record(
         law,
         10 ** generator.uniform(-5, -3),
         generator.uniform(0.1, 3.0) * OMEGA_N,
-        suspension={"column_angle": column_angle},
+        suspension={"column_angle": column_angle, **suspension},
         friction={"dynamic": generator.uniform(0.0, 0.2), "static": generator.uniform(0.0, 0.2)},
         effects={name: typical(name, place) for name in names},
     )

@@ -29,6 +29,7 @@ def random_machine(draw):
             "wedge_angle": np.radians(draw.uniform(20.0, 70.0)),
             "column_angle": np.radians(draw.uniform(-15.0, 15.0)),
             "wedge_preload": draw.uniform(-2.0, 20.0),
+            "damping": draw.choice(parameters.DAMPING),
         },
         friction={"mu_d": draw.uniform(0.02, 0.8)},
         effects={"guide_friction": {"force": draw.choice([0.0, 0.5])}},
@@ -40,9 +41,11 @@ def by_programme(row, mu):
     s, g = row["suspension"], row["geometry"]
     t_c, n_c = (-g["sin_column"], g["cos_column"]), (g["cos_column"], g["sin_column"])
     t_b, p_b = (g["sin_wedge"], g["cos_wedge"]), (g["cos_wedge"], -g["sin_wedge"])
-    rise = g["column_ratio"] * g["rest"] * g["cos_column"]
-    wedge = s["wedge_preload"] - s["wedge_spring"] * rise - s["wedge_mass"] * s["gravity"]
+    shortening = (g["column_ratio"] * g["cos_column"] - g["spring_on_bolster"]) * g["rest"]
+    spring = s["wedge_preload"] - s["wedge_spring"] * shortening
+    wedge = spring - s["wedge_mass"] * s["gravity"]
     bolster = -s["bolster_spring"] * g["rest"] - s["bolster_mass"] * s["gravity"]
+    bolster -= 2.0 * g["spring_on_bolster"] * spring
     # Unknown: N_c, T_c, N_b, T_b, guide, u''
     across = [n_c[0], t_c[0], -p_b[0], t_b[0], 0.0, 0.0]
     upward = [n_c[1], t_c[1], -p_b[1], t_b[1], 0.0, s["wedge_mass"]]

@@ -10,7 +10,7 @@ from wedgesweep.effects.base import OSCILLATOR, SUSPENSION
 from wedgesweep.friction.names import LAW_NAMES, OSCILLATOR_LAWS
 from wedgesweep.rotation import ROTATION
 from wedgesweep.systems.oscillator.parameters import OF_BASE, OF_LAW, OF_ROD, PENDULUM
-from wedgesweep.systems.suspension.parameters import LOCKED_IN, UNILATERAL
+from wedgesweep.systems.suspension.parameters import CONSTANT, LOCKED_IN, UNILATERAL
 
 # What some laws of oscillators do without an effect.
 OF_ITSELF = {"lugre": "has bristles of its own", "hyperbolic": "falls with velocity by itself"}
@@ -24,6 +24,7 @@ def contradictions(document: Mapping[str, Any]) -> Iterator[str]:
     if "oscillator" in document:
         yield from _oscillator(document)
     else:
+        yield from _damping(document)
         yield from _joints(document)
     yield from _effects(document)
     yield from _settling(document)
@@ -123,6 +124,17 @@ def _effects(document: Mapping[str, Any]) -> Iterator[str]:
             yield f"suspension.{LOCKED_IN.key}: does not go with effects.{other}; remove one of them"
         if suspension.get("joints") == UNILATERAL:
             yield f"suspension.{LOCKED_IN.key}: does not go with unilateral joints; remove one of them"
+
+
+def _damping(document: Mapping[str, Any]) -> Iterator[str]:
+    """Constant damping without the force that presses the wedges: no load does."""
+    suspension = document.get("suspension", {})
+    force = suspension.get("wedge_preload_N", inf)
+    if suspension.get("damping") == CONSTANT and force <= 0.0:
+        yield (
+            f'suspension.wedge_preload_N: {force:g} presses no wedge; with damping = "constant" it must be '
+            "greater than 0, as in 4.0"
+        )
 
 
 def _joints(document: Mapping[str, Any]) -> Iterator[str]:

@@ -31,7 +31,15 @@ from wedgesweep.systems.oscillator.parameters import (
     OSCILLATOR,
     RESTORING,
 )
-from wedgesweep.systems.suspension.parameters import JOINTS, LOCKED_IN, RESTITUTION, SUSPENSION, UNILATERAL
+from wedgesweep.systems.suspension.parameters import (
+    CONSTANT,
+    DAMPING,
+    JOINTS,
+    LOCKED_IN,
+    RESTITUTION,
+    SUSPENSION,
+    UNILATERAL,
+)
 
 BETA = Quantity("beta", nan, "input frequency over omega_n", above=0.0)
 FREQUENCY = Quantity("frequency_hz", nan, "input frequency", above=0.0)
@@ -287,6 +295,13 @@ def _model() -> Table:
                 "suspension",
                 "the suspension; defaults: Table 1 of the paper",
                 *map(Number.of, SUSPENSION),
+                Choice(
+                    key="damping",
+                    meaning="whether the springs of the wedges stand on the side frame, or on the bolster",
+                    choices=DAMPING,
+                    optional=True,
+                    example=CONSTANT,
+                ),
                 Choice(
                     key="joints",
                     meaning="whether both faces of a wedge are held, or may lift off, fall back and hit",

@@ -59,9 +59,11 @@ class Config:
 
     @cached_property
     def suspension(self) -> dict[str, Any]:
-        """SI numbers of the suspension; those of jamming and unilateral joints where they are given."""
+        """SI numbers of the suspension; damping, jamming and unilateral joints where they are given."""
         given = self.document["suspension"]
         numbers: dict[str, Any] = _si(suspension.SUSPENSION, given)
+        if "damping" in given:
+            numbers["damping"] = given["damping"]
         if suspension.LOCKED_IN.key in given:
             numbers |= _si([suspension.LOCKED_IN], given)
         if given.get("joints") != suspension.UNILATERAL:

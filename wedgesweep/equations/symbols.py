@@ -41,6 +41,7 @@ SUSPENSION = {
     "F_w0": Meaning("force of a wedge's spring at z = 0", "N"),
     "F_b": Meaning("force of the bolster's springs and of what is added to them", "N"),
     "F_w": Meaning("force of a wedge's spring", "N"),
+    "s_b": Meaning("1 where the springs of the wedges stand on the bolster (constant damping), else 0"),
     "gamma": Meaning("angle of the column", "rad"),
     "mu_c": Meaning("coefficient of friction of the column face, with the sign of its slip"),
     "mu_b": Meaning("coefficient of friction of the bolster face, with the sign of its slip"),

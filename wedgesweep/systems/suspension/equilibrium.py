@@ -12,6 +12,7 @@ from wedgesweep.systems.suspension.newton import (
     Loads,
     loads_per_displacement,
     reactions,
+    spring_forces,
 )
 
 ITERATIONS = 100
@@ -45,22 +46,24 @@ def equilibrium(p):
     ``rz``, ``rq``: z'' and Q'' that are left; ``zz``, ``zq``, ``qz``, ``qq``: derivatives of z'' and Q'' by z
     and Q, such as ``qz`` of Q'' by z.
     """
-    s, lift = p.suspension, p.geometry.column_ratio * p.geometry.cos_column
+    s, g = p.suspension, p.geometry
+    lift, on_bolster = g.column_ratio * g.cos_column, g.spring_on_bolster
+    wedge_by_z, wedge_by_q = -s.wedge_spring * (lift - on_bolster), -s.wedge_spring * g.lift_ratio
     cubic = cubic_stiffness.coefficient(p)
     yields, stiffness = column_compliance.acts(p), column_compliance.stiffness(p)
     close = REACHED * (s.bolster_mass * s.gravity + abs(s.wedge_preload)) / s.bolster_spring
     z, deflection = 0.0, 0.0
     for _ in range(ITERATIONS):
-        wedge = s.wedge_preload - s.wedge_spring * (lift * z + p.geometry.lift_ratio * deflection)
-        vertical = -(s.bolster_spring + cubic * z * z) * z - s.bolster_mass * s.gravity
+        wedge, reaction = spring_forces(lift * z + g.lift_ratio * deflection, z, p)
+        vertical = -(s.bolster_spring + cubic * z * z) * z - s.bolster_mass * s.gravity + reaction
         lateral = -stiffness * deflection
         rz, rq = _response(wedge - s.wedge_mass * s.gravity, vertical, lateral, p)
-        tangent = -s.bolster_spring - 3.0 * cubic * z * z
-        zz, qz = _response(-s.wedge_spring * lift, tangent, 0.0, p)
+        tangent = -s.bolster_spring - 3.0 * cubic * z * z - 2.0 * on_bolster * wedge_by_z
+        zz, qz = _response(wedge_by_z, tangent, 0.0, p)
         if not yields:
             dz, dq, stable = -rz / zz, 0.0, zz < 0.0
         else:
-            zq, qq = _response(-s.wedge_spring * p.geometry.lift_ratio, 0.0, -stiffness, p)
+            zq, qq = _response(wedge_by_q, -2.0 * on_bolster * wedge_by_q, -stiffness, p)
             jacobian = zz * qq - zq * qz
             dz, dq = -(rz * qq - zq * rq) / jacobian, -(zz * rq - rz * qz) / jacobian
             stable = zz < 0.0 and jacobian > 0.0

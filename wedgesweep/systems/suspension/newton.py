@@ -119,17 +119,30 @@ def _rise(z, y, p):
 
 
 @inlined
+def spring_forces(rise, z, p):
+    """Force (N, up positive) of a wedge's spring on the wedge, and of both wedges' springs on the bolster.
+
+    They stand on the side frame (variable damping), or on the bolster (constant damping); the wedge has risen
+    by ``rise``, the bolster by ``z`` (m).
+    """
+    s, on_bolster = p.suspension, p.geometry.spring_on_bolster
+    force = s.wedge_preload - s.wedge_spring * (rise - on_bolster * z)
+    return force, -2.0 * on_bolster * force
+
+
+@inlined
 def applied_forces(rise, y, segment, guide, p):
     """Forces (N, up positive) on a wedge that has risen by ``rise`` (m) and on the bolster, but for contacts.
 
     ``segment`` of the travel of the bolster, and its slip branch in the ``guide``.
     """
     s, z, velocity = p.suspension, p.geometry.rest + y[X], y[VELOCITY]
-    wedge = s.wedge_preload - s.wedge_spring * rise - s.wedge_mass * s.gravity
+    spring, reaction = spring_forces(rise, z, p)
     bolster = hooks.force_on_mass(z, velocity, y, p) + hooks.damping(velocity, y, p)
     bolster += travel.force(y[X], segment, s.bolster_spring, p)
     bolster -= s.bolster_spring * z + s.bolster_mass * s.gravity
-    return wedge, bolster + guide_friction.force(velocity, guide, p)
+    bolster += guide_friction.force(velocity, guide, p)
+    return spring - s.wedge_mass * s.gravity, bolster + reaction
 
 
 @inlined
@@ -151,8 +164,9 @@ def loads(t, y, mode, p):
 def loads_per_displacement(p):
     """Change of the loads by x (N/m), without effects."""
     s, g = p.suspension, p.geometry
-    wedge = -s.wedge_spring * g.column_ratio * g.cos_column
-    return Loads(wedge * g.cos_column, wedge * g.sin_column, -s.bolster_spring, 0.0, 0.0, 0.0)
+    wedge = g.spring_on_bolster * s.wedge_spring - s.wedge_spring * g.column_ratio * g.cos_column
+    bolster = -s.bolster_spring - 2.0 * g.spring_on_bolster * wedge
+    return Loads(wedge * g.cos_column, wedge * g.sin_column, bolster, 0.0, 0.0, 0.0)
 
 
 @inlined

@@ -25,9 +25,9 @@ from wedgesweep.systems.suspension.equilibrium import determinant, equilibrium
 
 EQUATIONS = (
     "M_w (u'' e_z + r z'' t_c) = (F_w - M_w g) e_z - (N_c n_c + mu_c |N_c| t_c) + (N_b p_b - mu_b |N_b| t_b)",
-    "M_b (u'' + z'') = F_b - M_b g - 2 (N_b p_b - mu_b |N_b| t_b) . e_z",
+    "M_b (u'' + z'') = F_b - M_b g - 2 (N_b p_b - mu_b |N_b| t_b) . e_z - 2 s_b F_w",
     "F_b = -k_b z + R",
-    "F_w = F_w0 - k_w r z cos(gamma)",
+    "F_w = F_w0 - k_w (r cos(gamma) - s_b) z",
 )
 SUSPENSION = (
     Quantity("bolster_mass_kg", 0.70, "mass of the bolster, M_b", above=0.0),
@@ -62,7 +62,11 @@ GEOMETRY = (
     "bolster_slip_ratio",  # slip on the bolster face per Q
     "lift_ratio",  # rise of a wedge per Q
     "rest",  # z of the frictionless equilibrium (m)
+    "spring_on_bolster",  # 1 where the springs of the wedges stand on the bolster, 0: on the side frame
 )
+# Kinds of the paper's Figure 1: the spring of a wedge stands on the side frame, so that its force and thus
+# friction vary with the load, or in a pocket of the bolster.
+VARIABLE, CONSTANT = DAMPING = ("variable", "constant")
 
 # Whether a contact between wedge and column or bolster can pull, or opens: then it is the effect lift_off.
 BILATERAL, UNILATERAL = JOINTS = ("bilateral", "unilateral")
@@ -149,8 +153,9 @@ def record(
     amplitude, omega : float
         Of the input: m, rad/s.
     suspension, friction, effects : mapping
-        SI numbers by the names of their quantities; ``joints`` of the suspension is one of JOINTS, and
-        ``restitution`` goes with unilateral ones. ``locked_in``: that of the effect jamming.
+        SI numbers by the names of their quantities; ``damping`` of the suspension is one of DAMPING, its
+        ``joints`` one of JOINTS, and ``restitution`` goes with unilateral ones. ``locked_in``: that of the
+        effect jamming.
 
     Returns
     -------
@@ -167,6 +172,7 @@ def record(
         effects = {**effects, lift_off.NAME: {"restitution": restitution}}
     if locked_in := suspension.get(LOCKED_IN.name):
         effects = {**effects, jamming.NAME: {LOCKED_IN.name: locked_in}}
+    p["geometry"]["spring_on_bolster"] = suspension.get("damping") == CONSTANT
     nominal = p["suspension"].copy()
     records.set_common(case, law, friction, (amplitude, omega))
     records.set_effects(p, names, effects)
@@ -261,6 +267,7 @@ def _column_force_at_rest(p: np.void) -> float:
     """Normal force (N) on the column face of the frictionless equilibrium; 1 where it carries nothing."""
     s, g = p["suspension"], p["geometry"]
     rise = g["column_ratio"] * g["cos_column"] * g["rest"] + g["lift_ratio"] * p["column_compliance"]["rest"]
+    rise -= g["spring_on_bolster"] * g["rest"]
     load = s["wedge_preload"] - s["wedge_spring"] * rise - s["wedge_mass"] * s["gravity"]
     return abs(float(load * g["cos_wedge"] / g["sin_included"])) or 1.0
 

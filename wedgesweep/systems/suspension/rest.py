@@ -90,9 +90,11 @@ def _equations(rows: np.ndarray) -> np.ndarray:
 def _loads(rows: np.ndarray) -> np.ndarray:
     """Forces of springs and weight (N) in the three equations, shape (n, 3)."""
     s, g = rows["suspension"], rows["geometry"]
-    lift = g["column_ratio"] * g["cos_column"] * g["rest"]
-    wedge = s["wedge_preload"] - s["wedge_spring"] * lift - s["wedge_mass"] * s["gravity"]
+    lift = g["column_ratio"] * g["cos_column"] * g["rest"] - g["spring_on_bolster"] * g["rest"]
+    spring = s["wedge_preload"] - s["wedge_spring"] * lift
+    wedge = spring - s["wedge_mass"] * s["gravity"]
     bolster = -s["bolster_spring"] * g["rest"] - s["bolster_mass"] * s["gravity"]
+    bolster -= 2.0 * g["spring_on_bolster"] * spring
     return np.stack([wedge * g["cos_column"], wedge * g["sin_column"], bolster], axis=-1)
 
 
