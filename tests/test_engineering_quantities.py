@@ -15,6 +15,7 @@ from wedgesweep import config, figures, units
 from wedgesweep.engineering_quantities import OF_CYCLE, OF_FACES, OF_WHEEL, QUANTITIES, engineering
 from wedgesweep.solvers import imposed_motion
 from wedgesweep.sweep.run import Sweep
+from wedgesweep.systems.suspension.parameters import DAMPING
 
 G = TABLE_1["gravity"]
 MASS = TABLE_1["bolster_mass"] + 2.0 * TABLE_1["wedge_mass"]
@@ -51,9 +52,10 @@ def test_energy_a_cycle_is_what_the_base_supplies(law):
     assert lost.values == pytest.approx(ds["supplied_energy"].values, rel=1e-6)
 
 
+@pytest.mark.parametrize("damping", DAMPING)
 @pytest.mark.parametrize("gamma", [4.0, -4.0])
-def test_friction_up_and_down_are_the_forces_that_a_slow_motion_takes(gamma):
-    suspension = {"column_angle_deg": gamma, "wedge_preload_N": 3.0, "wear_mm": 0.2}
+def test_friction_up_and_down_are_the_forces_that_a_slow_motion_takes(gamma, damping):
+    suspension = {"damping": damping, "column_angle_deg": gamma, "wedge_preload_N": 3.0, "wear_mm": 0.2}
     ds = solved(1.0, suspension=suspension)
     case = config.from_document({"suspension": suspension, "sweep": SWEEP_OF_ONE}).records()
     still = np.zeros(3)

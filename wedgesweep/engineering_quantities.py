@@ -14,13 +14,13 @@ from wedgesweep import config as configs
 from wedgesweep.config import Case, Config
 from wedgesweep.effects import EFFECTS
 from wedgesweep.effects.base import SUSPENSION
-from wedgesweep.systems.suspension.parameters import driven_mass, rise_by_wear
+from wedgesweep.systems.suspension.parameters import driven_mass, rise_by_wear, spring_at_rest
 
 # Units and long name of each quantity, by name. The first ones follow from the model,
 OF_MODEL = {
     "static_load": ("N", "weight on the springs: bolster and both wedges"),
     "wedge_rise": ("m", "rise of the wedges by wear"),
-    "wedge_load_share": ("1", "share of the load on the wedge springs at frictionless rest"),
+    "wedge_load_share": ("1", "force of both wedge springs at frictionless rest over static_load"),
     "friction_force_up": ("N", "friction against a bolster that rises slowly at the rest position"),
     "friction_force_down": ("N", "friction against a bolster that sinks slowly at the rest position"),
     "snubbing_ratio": ("1", "mean of friction_force_up and friction_force_down over static_load"),
@@ -110,9 +110,9 @@ class _Models(NamedTuple):
 
 
 def _of_model(models: _Models) -> dict[str, xr.DataArray]:
-    s, g = models.records["suspension"], models.records["geometry"]
+    s = models.records["suspension"]
     load = (s["bolster_mass"] + 2.0 * s["wedge_mass"]) * s["gravity"]
-    spring = s["wedge_preload"] - s["wedge_spring"] * g["column_ratio"] * g["cos_column"] * g["rest"]
+    spring = spring_at_rest(models.records)
     guide = models.records["guide_friction"]["force"]
     rising, sinking = (_wedge_force(models.records, spring, sense) for sense in (1.0, -1.0))
     free = _wedge_force(models.records, spring, 0.0)
@@ -131,7 +131,7 @@ def _of_model(models: _Models) -> dict[str, xr.DataArray]:
 def _wedge_force(records: np.ndarray, spring: np.ndarray, sense: float) -> np.ndarray:
     """Vertical force (N) of both wedges on a bolster that moves slowly, shape (n,).
 
-    ``spring``: force (N) under each wedge; ``sense``: 1 up, -1 down, 0 without friction. NaN where a face
+    ``spring``: force (N) of each wedge's spring; ``sense``: 1 up, -1 down, 0 without friction. NaN where a face
     would have to pull, or where the wedges lock.
     """
     s, g, mu = records["suspension"], records["geometry"], records["friction"]["mu_d"]
@@ -147,7 +147,8 @@ def _wedge_force(records: np.ndarray, spring: np.ndarray, sense: float) -> np.nd
 
 def _of_cycle(ds: xr.Dataset, models: _Models, load: xr.DataArray) -> dict[str, xr.DataArray]:
     s, g = models.records["suspension"], models.records["geometry"]
-    wedges = 2.0 * s["wedge_spring"] * (g["column_ratio"] * g["cos_column"]) ** 2
+    longer = g["column_ratio"] * g["cos_column"] - g["spring_on_bolster"]  # a wedge's spring, per z
+    wedges = 2.0 * s["wedge_spring"] * longer**2
     stiffness = models.array(s["bolster_spring"] + wedges)
     lost = ds["dissipated_energy"] + ds.get("impact_energy", 0.0)
     travel = 0.5 * ds["peak_to_peak"]

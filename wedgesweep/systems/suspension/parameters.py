@@ -266,10 +266,16 @@ def prepare(case: np.ndarray, acting: Sequence[str]) -> None:
 def _column_force_at_rest(p: np.void) -> float:
     """Normal force (N) on the column face of the frictionless equilibrium; 1 where it carries nothing."""
     s, g = p["suspension"], p["geometry"]
-    rise = g["column_ratio"] * g["cos_column"] * g["rest"] + g["lift_ratio"] * p["column_compliance"]["rest"]
-    rise -= g["spring_on_bolster"] * g["rest"]
-    load = s["wedge_preload"] - s["wedge_spring"] * rise - s["wedge_mass"] * s["gravity"]
+    load = spring_at_rest(p) - s["wedge_mass"] * s["gravity"]
     return abs(float(load * g["cos_wedge"] / g["sin_included"])) or 1.0
+
+
+def spring_at_rest(rows: np.ndarray | np.void) -> np.ndarray:
+    """Force (N) of each wedge's spring in the frictionless equilibrium, of records of any shape."""
+    s, g = rows["suspension"], rows["geometry"]
+    rise = g["column_ratio"] * g["cos_column"] * g["rest"]
+    rise = rise + g["lift_ratio"] * rows["column_compliance"]["rest"] - g["spring_on_bolster"] * g["rest"]
+    return s["wedge_preload"] - s["wedge_spring"] * rise
 
 
 def _largest_coefficient(p: np.void, acting: Sequence[str]) -> float:

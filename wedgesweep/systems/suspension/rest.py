@@ -16,6 +16,8 @@ from itertools import combinations
 
 import numpy as np
 
+from wedgesweep.systems.suspension.parameters import spring_at_rest
+
 # Unknown are N_c, T_c, N_b, T_b, friction G of the guide on the bolster, and u''. The limits are those of T
 # on two faces and of G, in both directions.
 UNKNOWNS = LIMITS = 6
@@ -90,8 +92,7 @@ def _equations(rows: np.ndarray) -> np.ndarray:
 def _loads(rows: np.ndarray) -> np.ndarray:
     """Forces of springs and weight (N) in the three equations, shape (n, 3)."""
     s, g = rows["suspension"], rows["geometry"]
-    lift = g["column_ratio"] * g["cos_column"] * g["rest"] - g["spring_on_bolster"] * g["rest"]
-    spring = s["wedge_preload"] - s["wedge_spring"] * lift
+    spring = spring_at_rest(rows)
     wedge = spring - s["wedge_mass"] * s["gravity"]
     bolster = -s["bolster_spring"] * g["rest"] - s["bolster_mass"] * s["gravity"]
     bolster -= 2.0 * g["spring_on_bolster"] * spring
