@@ -284,6 +284,17 @@ def test_the_reason_for_a_reservation_is_given(verdict, change, words):
     assert words in told(document, data)
 
 
+def test_tests_that_are_too_few_still_tell_the_best_explanations():
+    document, data = fixture_diagnosis.build("data-insufficient")
+    document["rivals"] = []
+    force = {"guide_friction.force_N": {"value": 0.7, "ci95": [0.6, 0.8]}}
+    records = [{"record": name, "parameters": force} for name in ("a", "b")]
+    document["record_by_record"] = [{"effects": ["guide_friction"], "accuracy": 0.067, "records": records}]
+    sentence = told(document, data)
+    assert "cannot show what; so far, to within the noise," in sentence
+    assert "fitted to each by itself, guide_friction to 6.7 % (guide friction.force 0.7, 0.7 N)" in sentence
+
+
 def test_sentence_says_what_the_budget_left_out():
     document, data = fixture_diagnosis.build("none-of-mine")
     complete = told(document, data)

@@ -160,9 +160,14 @@ def _insufficient(result: DiagnosisResult) -> str:
             share = formatting.short(result.document["reason"]["power_over_noise"], 2)
             return f"{tests.capitalize()} hold hardly more than noise: {share} times its power."
         case Reason.UNCHECKED:
-            so_far = "".join(f"; so far, {clause}" for clause in ladder.clauses(result))
-            return f"{_wrong(result)}, and not everything was tried that may explain it{so_far}."
+            return f"{_wrong(result)}, and not everything was tried that may explain it{_so_far(result)}."
     return f"{_wrong(result)}, but {tests} cannot show what{_adequate(result)}{_next_test(result)}."
+
+
+def _so_far(result: DiagnosisResult) -> str:
+    """What the best explanations achieve, though nothing is certain."""
+    known = ladder.clauses(result)
+    return f"; so far, {'; '.join(known)}" if known else ""
 
 
 def _wrong(result: DiagnosisResult) -> str:
@@ -174,10 +179,10 @@ def _wrong(result: DiagnosisResult) -> str:
 
 
 def _adequate(result: DiagnosisResult) -> str:
-    """Explanations that would do, and what speaks against naming one."""
+    """Explanations that would do, and what speaks against naming one; else what the best ones achieve."""
     match result.document["rivals"]:
         case []:
-            return ""
+            return _so_far(result)
         case [only]:
             but = f", but {doubt}" if (doubt := _reservation(result)) else ""
             return f": {phrases.combination(only['effects'])} would leave only noise{but}"
