@@ -34,6 +34,7 @@ ALL = {
     "loop": Kind(40),  # the same in hysteresis loops
     "mixed": Kind(20),  # the same in steady tests, releases and a loop together
     "worse": Kind(180),  # any of these three, made worse as recorders do; see worse.py
+    "damper": Kind(40),  # one effect of a damper, or none, in its loops; see time_records.py
 }
 KINDS = tuple(ALL)
 

@@ -1,8 +1,9 @@
 """Sets of tests that are not all steady: releases and sweeps, hysteresis loops, and several kinds together.
 
-Oscillators and suspensions of any size take turns. Each hides one effect, or none in every fifth set. It is
-as strong as is needed for a drawn change of the response; sets whose excess is too small for a name all the
-same count as weak. A set of kind ``worse`` is one of these three, whose files ``worse.py`` makes worse.
+Oscillators and suspensions of any size take turns; those of kind ``damper`` are dampers. Each hides one
+effect, or none in every fifth set. It is as strong as is needed for a drawn change of the response; sets
+whose excess is too small for a name all the same count as weak. A set of kind ``worse`` is a transient, loop
+or mixed set whose files ``worse.py`` makes worse.
 """
 
 from collections.abc import Callable
@@ -25,7 +26,8 @@ from wedgesweep.synthesize.other_tables import loop
 from wedgesweep.synthesize.plan import PlannedTest
 from wedgesweep.synthesize.transients import transient
 
-TRANSIENT, LOOP, MIXED, WORSE = TIME_KINDS = ("transient", "loop", "mixed", "worse")
+TRANSIENT, LOOP, MIXED, WORSE, DAMPER = TIME_KINDS = ("transient", "loop", "mixed", "worse", "damper")
+MADE_WORSE = (TRANSIENT, LOOP, MIXED)
 LAWS = ("coulomb", "static-dynamic")
 # Effects of a sine as an input, and those that a loop cannot show.
 OF_A_SINE = ("input_distortion", "stray_vibration", "fixture_resonance", "cross_slip")
@@ -38,6 +40,13 @@ BENCH_HZ, BENCH_TRAVEL_MM, BENCH_IMPOSED_MM, BENCH_BASE_MM = 13.6, 1.0, 0.15, 0.
 # Of an oscillator: natural frequency (Hz), damping ratio, and friction over the spring's force at the largest
 # motion.
 FREQUENCY_HZ, DAMPING, FRICTION = (1.0, 8.0), (0.003, 0.02), (0.02, 0.08)
+# Of a damper: damping ratio, and friction over the same force.
+OF_DAMPER = (0.5, 2.0), (0.1, 0.5)
+# Effects that those of dampers only are hidden beside.
+NEIGHBOURS = (
+    *("viscous_damping", "directional_damping", "quadratic_drag"),
+    *("presliding", "damper_play", "friction_level"),
+)
 # Its coefficients of friction.
 STATIC, DYNAMIC = 0.36, 0.3
 # Largest motion (mm) of a mass (kg), noise over the rms of a channel.
@@ -85,18 +94,22 @@ def _drawn(one: DataSet, attempt: int) -> dict[str, Any] | None:
     """Documents of a set; None if its effect cannot be as strong as is wanted."""
     random = one.random(attempt)
     law = LAWS[one.index % len(LAWS)]
-    drawn = _suspension(random) if one.index // 2 % 2 else _oscillator(random)
+    if one.kind == DAMPER:
+        drawn = _oscillator(random, *OF_DAMPER)
+    else:
+        drawn = _suspension(random) if one.index // 2 % 2 else _oscillator(random)
     kind, turn = one.kind, one.index
     if kind == WORSE:  # each fault in all kinds of test, and then with all kinds of noise
-        turn, place = divmod(worse.of(one.index).turn, len(TESTS))
-        kind = tuple(TESTS)[place]
+        turn, place = divmod(worse.of(one.index).turn, len(MADE_WORSE))
+        kind = MADE_WORSE[place]
     rig, tests = drawn.rig, TESTS[kind](drawn)
     planned = plan.from_document({"test": tests}).tests
     sampling_hz = round(SAMPLED * drawn.frequency, 3)
     hidden: dict[str, dict[str, float]] = {}
     if one.index % CLEAN_EACH != CLEAN_EACH - 1:
         left_out = NOT_IN_LOOPS if kind == LOOP else OF_A_SINE
-        known = set(rig.possible_effects).intersection(ranges.LEADING).difference(left_out)
+        among = (*ranges.OF_DAMPERS, *NEIGHBOURS) if kind == DAMPER else ranges.LEADING
+        known = set(rig.possible_effects).intersection(among).difference(left_out)
         possible = [name for name in EFFECTS if name in known]
         order = np.random.default_rng([one.seed, 101]).permutation(len(possible))
         effect = possible[order[(one.index + attempt // SAME_EFFECT) % len(possible)]]
@@ -161,10 +174,14 @@ def _suspension(random: np.random.Generator) -> Drawn:
     return Drawn(rig, frequency, *sizes)
 
 
-def _oscillator(random: np.random.Generator) -> Drawn:
+def _oscillator(
+    random: np.random.Generator,
+    ratios: tuple[float, float] = DAMPING,
+    frictions: tuple[float, float] = FRICTION,
+) -> Drawn:
     frequency, travel = rigs.logarithmic(FREQUENCY_HZ, random), rigs.logarithmic(TRAVEL_MM, random)
     mass, omega = rigs.logarithmic(MASS_KG, random), 2.0 * pi * frequency
-    damping, friction = rigs.logarithmic(DAMPING, random), rigs.logarithmic(FRICTION, random)
+    damping, friction = rigs.logarithmic(ratios, random), rigs.logarithmic(frictions, random)
     normal_force = friction * 1e-3 * travel * mass * omega**2 / DYNAMIC
     coefficients = {"static": STATIC, "dynamic": DYNAMIC}
     threshold = {"threshold_velocity_mm_per_s": rigs.THRESHOLD * travel * omega}
@@ -214,4 +231,4 @@ def _mixed(drawn: Drawn) -> list[dict[str, Any]]:
     return [*steady, *_releases(drawn), _loops(drawn)[0]]
 
 
-TESTS = {TRANSIENT: _transients, LOOP: _loops, MIXED: _mixed}
+TESTS = {TRANSIENT: _transients, LOOP: _loops, MIXED: _mixed, DAMPER: _loops}

@@ -304,3 +304,13 @@ def test_locked_in_forces_need_set_valued_friction_and_nothing_that_yields():
         config.parse("[suspension]\nlocked_in = 0.5\n" + SWEEP).records(np.array([0]))["jamming"]["locked_in"]
         == 0.5
     )
+
+
+def test_a_damper_behind_a_spring_needs_friction_and_damping_that_follow_the_same_body():
+    own = '[oscillator]\nmass_kg = 1.0\nspring_N_per_mm = 1.0\nnormal_force_N = 1.0\ncontact = "ground"\n'
+    effect = "[effects.series_compliance]\nstiffness_N_per_mm = 10.0\n"
+    (problem,) = problems(own + effect + SWEEP)
+    assert "effects.series_compliance: damping follows the base" in problem
+    assert "series_compliance" not in config.parse(own + SWEEP).possible_effects
+    forced = SWEEP.replace("amplitude_mm", "amplitude_N") + 'excitation = "force"\n'
+    assert "series_compliance" in config.parse(own + effect + forced).effects

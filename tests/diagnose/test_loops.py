@@ -21,7 +21,7 @@ from wedgesweep.diagnose.smoothing import (
     motion,
     white_noise,
 )
-from wedgesweep.effects import merge
+from wedgesweep.effects import EFFECTS, merge
 from wedgesweep.errors import InputError
 from wedgesweep.measured import MeasuredError, read
 from wedgesweep.report.sentence import sentence
@@ -294,6 +294,27 @@ def test_a_hidden_effect_is_found(tmp_path, effect):
         factor = {"_mm": 1e-3, "_mm_per_s": 1e-3, "_N_per_mm3": 1e9}
         unit = next((size for end, size in factor.items() if key.endswith(end)), 1.0)
         assert estimate["value"] * unit == pytest.approx(true, rel=0.1), key
+
+
+# A damper, and what may be missing of it: SI numbers, and neighbours that they are confounded with.
+STRUT = DAMPER.replace("normal_force_N = 10.0", "normal_force_N = 200.0")
+OF_DAMPERS = {
+    "series_compliance": {"stiffness": 1e5, "coefficient": 500.0},
+}
+NEIGHBOURS = ("friction_level", "viscous_damping", "directional_damping", "quadratic_drag", "damper_play")
+
+
+@pytest.mark.few(1)
+@pytest.mark.parametrize("effect", OF_DAMPERS)
+def test_what_is_missing_of_a_damper_is_found_among_its_neighbours(tmp_path, effect):
+    hidden = OF_DAMPERS[effect]
+    path = write(tmp_path, STRUT, {effect: hidden}, motions=((0.01, 1.1, 6.0),), noise=(1e-6, 0.5))
+    found = diagnosed(path, [*OF_DAMPERS, *NEIGHBOURS, "presliding"])
+    assert (found.verdict, [cause["effect"] for cause in found.causes]) == ("named", [effect])
+    keys = {each.key: each for each in EFFECTS[effect].quantities}
+    for key, estimate in found.causes[0]["parameters"].items():
+        true = hidden[keys[key].name] / keys[key].factor
+        assert estimate["value"] == pytest.approx(true, rel=0.03), key
 
 
 def test_strokes_in_one_direction_are_loops(tmp_path):

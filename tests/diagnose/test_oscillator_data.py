@@ -125,6 +125,7 @@ def toml_of(tests):
         ("quadratic_drag", {"coefficient_N_s2_per_m2": 200.0}, False, TESTS),
         ("backlash", {"clearance_mm": 0.2}, True, TESTS),
         ("damper_play", {"clearance_mm": 0.0002}, False, MOSTLY_SLIGHT),
+        ("series_compliance", {"stiffness_N_per_mm": 3.0, "coefficient_N_s_per_m": 4.0}, True, TESTS),
     ],
 )
 def test_what_is_hidden_under_a_force_is_found(tmp_path, monkeypatch, effect, hidden, recorded, tests):
@@ -139,7 +140,7 @@ def test_what_is_hidden_under_a_force_is_found(tmp_path, monkeypatch, effect, hi
     assert ("recorded" if recorded else f"{tests[0][1]:g} +- 0.1 %") in invoke("check", "made/measured.toml")
     candidates = (
         *("friction_level", "viscous_damping", "directional_damping", "quadratic_drag"),
-        *("cubic_stiffness", "backlash", "presliding", "damper_play"),
+        *("cubic_stiffness", "backlash", "presliding", "damper_play", "series_compliance"),
     )
     found = diagnose(measured.read(tmp_path / "made" / "measured.toml"), candidates)
     assert (found.finding.verdict, found.finding.best.effects) == ("named", (effect,))

@@ -33,6 +33,7 @@ STRENGTHS = {
     "ageing": {"rate": 0.02, "time": 0.01},
     "directional_friction": {"asymmetry": 0.3},
     "damper_play": {"clearance": 3e-4},
+    "series_compliance": {"stiffness": 1e4, "coefficient": 3.0},
     "viscous_damping": {"coefficient": 5.0},
     "directional_damping": {"coefficient": 5.0, "asymmetry": 0.6},
     "quadratic_drag": {"coefficient": 100.0},

@@ -7,7 +7,7 @@ import pytest
 from validation import hiding, judge, ranges, response, rigs, run, sets, strength
 from validation.__main__ import main
 from validation.judge import Share
-from validation.time_records import TESTS
+from validation.time_records import LOOP, MIXED, TRANSIENT
 
 from tests.measured.test_steadiness import UNSTEADY, only_fault, written
 from wedgesweep.effects import EFFECTS, candidates
@@ -21,8 +21,8 @@ IDEAL = ("clean", "strong", "weak", "pair", "unknown", "poor", "added")
 
 
 def test_every_effect_is_hidden_within_the_range_of_the_fit():
-    assert {*ranges.LEADING, *ranges.NOT_HIDDEN} == set(candidates())
-    for name in ranges.LEADING:
+    assert {*ranges.LEADING, *ranges.OF_DAMPERS, *ranges.NOT_HIDDEN} == set(candidates())
+    for name in ranges.LEADING | ranges.OF_DAMPERS:
         effect = EFFECTS[name]
         for seed in range(20):
             path = ranges.path(name, np.random.default_rng(seed))
@@ -35,7 +35,7 @@ def test_every_effect_is_hidden_within_the_range_of_the_fit():
 
 
 def test_an_effect_is_nearly_neutral_at_the_weak_end():
-    for name, leading in ranges.LEADING.items():
+    for name, leading in (ranges.LEADING | ranges.OF_DAMPERS).items():
         quantity = next(each for each in EFFECTS[name].quantities if each.key == leading.key)
         weak = ranges.path(name, np.random.default_rng(0))(0.0)[leading.key]
         if np.isfinite(quantity.default):
@@ -172,7 +172,7 @@ def test_a_test_that_check_refuses_as_not_steady_gets_more_input(tmp_path):
     [
         (107, RECORDS, IDEAL),
         (107, RIGS_RECORDS, RIGS),
-        (107, TIME_RECORDS, tuple(TESTS)),
+        (107, TIME_RECORDS, (TRANSIENT, LOOP, MIXED)),
     ],
     ids=["bench", "rigs", "time"],
 )

@@ -14,6 +14,7 @@ NAMED = {
     "pendulum from 10 deg": {"viscous_damping", "cubic_stiffness"},
     "damper that differs by direction": {"directional_damping"},
     "damper with play of 1 mm": {"damper_play"},
+    "damper on a bushing": {"series_compliance"},
     "spring with play": {"backlash"},
     "spring that stiffens": {"cubic_stiffness"},
 }
@@ -23,7 +24,6 @@ CLOSE = {
     "pendulum from 60 deg": [["cubic_stiffness"], ["cubic_stiffness", "viscous_damping"]],
     "pendulum with drag": [["cubic_stiffness"], ["cubic_stiffness", "quadratic_drag"]],
     "pendulum with dry friction": [["cubic_stiffness"], ["cubic_stiffness", "guide_friction"]],
-    "damper on a bushing": [["presliding"]],
 }
 
 

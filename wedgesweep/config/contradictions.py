@@ -4,12 +4,12 @@ from collections.abc import Iterator, Mapping
 from math import inf, nan
 from typing import Any
 
-from wedgesweep.config.input_contradictions import input_contradictions
+from wedgesweep.config.input_contradictions import input_contradictions, is_force
 from wedgesweep.effects import EFFECTS, jamming, lift_off, of_system, with_lift_off
 from wedgesweep.effects.base import OSCILLATOR, SUSPENSION
 from wedgesweep.friction.names import LAW_NAMES, OSCILLATOR_LAWS
 from wedgesweep.rotation import ROTATION
-from wedgesweep.systems.oscillator.parameters import OF_BASE, OF_LAW, OF_ROD, PENDULUM
+from wedgesweep.systems.oscillator.parameters import OF_BASE, OF_LAW, OF_ROD, PENDULUM, WITH_DAMPING
 from wedgesweep.systems.suspension.parameters import CONSTANT, LOCKED_IN, UNILATERAL
 
 # What some laws of oscillators do without an effect.
@@ -103,8 +103,23 @@ def _oscillator(document: Mapping[str, Any]) -> Iterator[str]:
         yield 'sweep.amplitude_N: 0 moves nothing without contact = "belt"; it must be greater than 0'
     if OF_BASE in document.get("effects", {}) and sweep.get("excitation") == "force":
         yield f"effects.{OF_BASE}: under a force the base does not move; remove it"
-    if on_belt and OF_ROD in document.get("effects", {}):
-        yield f"effects.{OF_ROD}: a mass on a belt has no rod; remove it"
+    if on_belt:
+        for name in set(OF_ROD).intersection(document.get("effects", {})):
+            yield f"effects.{name}: a mass on a belt has no rod; remove it"
+    yield from _with_damping(document)
+
+
+def _with_damping(document: Mapping[str, Any]) -> Iterator[str]:
+    """What a damper needs whose damping and friction are both behind a spring."""
+    given, own = document.get("effects", {}).get(WITH_DAMPING), document["oscillator"]
+    if given is None:
+        return
+    moves = document.get("sweep", {}).get("excitation") != "force" and not is_force(document.get("input", {}))
+    if own.get("contact") == "ground" and moves:
+        yield (
+            f"effects.{WITH_DAMPING}: damping follows the base, friction the ground: no rod has both; write "
+            'contact = "base", or excitation = "force"'
+        )
 
 
 def _effects(document: Mapping[str, Any]) -> Iterator[str]:

@@ -17,7 +17,7 @@ NAMES = (
     *("stribeck", "presliding", "ageing", "directional_friction", "load_dependent_friction"),
     *("cross_slip", "column_compliance"),
     lift_off.NAME,
-    *("jamming", "damper_play"),
+    *("jamming", "damper_play", "series_compliance"),
     *("viscous_damping", "directional_damping", "quadratic_drag"),
     *("cubic_stiffness", "backlash", "guide_friction", "end_stop", "empirical_force"),
     *("input_distortion", "stray_vibration", "fixture_resonance"),

@@ -208,8 +208,11 @@ def driving_force(t, acceleration, y, mode, p):
 
 
 @optional
-def already_moving(y, p):
-    """A state at rest as a motion that has been going on would have left it."""
+def already_moving(y, deflected, p):
+    """A state at rest as a motion that has been going on would have left it.
+
+    ``deflected``: how far from there what is elastic may be, as a share of how far it yields.
+    """
     return y
 
 
@@ -220,10 +223,11 @@ def share_before_jump(y, step, p):
 
 
 @optional
-def moved_freely(y, following, step, p):
-    """The state after a step (s) at a constant velocity, with states that move freely between two ends.
+def moved_freely(y, following, change, step, p):
+    """The state after a step (s), with states that move freely between two ends, or slowly behind the mass.
 
-    ``following``: the other states after that step, by their rates.
+    ``following``: the other states after that step, by their rates; ``change``: by how much the velocity
+    (m/s), whose mean the state holds, grows over the step.
     """
     return following
 

@@ -55,7 +55,8 @@ def forces(
     step : float
         Time (s) between them.
     deflected : float
-        Deflection of bristles at the start, as a share of their largest one.
+        Deflection of bristles at the start, as a share of their largest one; of a damper's spring in series,
+        beyond that of a damper that has been moving at the first velocity, as a share of the latter.
 
     Returns
     -------
@@ -113,7 +114,7 @@ def _follow(p, places, motion, turns, step, deflected, out):
     jumps = 1.0 if p.friction.set_valued else nan
     bristly, going_on = _has_bristles(p), False
     turned, late = False, nan  # in the interval before a sample, and the mean force of its later half
-    y = already_moving(_first_state(motion[0, 0], deflected, p), p)
+    y = already_moving(_first_state(motion[0, 0], deflected, p), deflected, p)
     for i in range(turns.size):
         y, ends = _placed(y, places[i], motion[0, i]), _Ends(places[i : i + 2], motion[:, i : i + 2])
         out[i] = _force(y, motion[1, i], step, p)
@@ -129,7 +130,7 @@ def _follow(p, places, motion, turns, step, deflected, out):
             # States of effects see the mean motion between two samples.
             y = _placed(y, _between(ends.place, 0.5), _between(ends.motion[0], 0.5))
             shares[i] = jumps * turns[i] if reverses else share_before_jump(y, step, p)
-            y = _moved(y, step, p)
+            y = _moved(y, ends.motion[0, 1] - ends.motion[0, 0], step, p)
         going_on = turning and (reverses or _largest_change(before, y, p) > FAST)
         turned = turning
     last = turns.size
@@ -200,9 +201,9 @@ def _resolved(y, ends, turn, step, p):
             share = edges[piece] + (i + 0.5) * part
             acceleration = _between(ends.motion[1], share)
             y = _placed(y, _between(ends.place, share), _between(ends.motion[0], share))
-            y = _moved(y, 0.5 * part * step, p)
+            y = _moved(y, 0.0, 0.5 * part * step, p)
             force = driving_force(0.0, acceleration, y, initial_mode(0.0, y, p)[0], p)
-            y = _moved(y, 0.5 * part * step, p)
+            y = _moved(y, 0.0, 0.5 * part * step, p)
             if share < 0.5:
                 early += 2.0 * part * force
             else:
@@ -226,9 +227,9 @@ def _force(y, acceleration, step, p):
 
 
 @inlined
-def _moved(y, step, p):
-    """The state vector after a step at a constant velocity of the mass."""
-    return moved_freely(y, _advanced(y, step, p), step, p)
+def _moved(y, change, step, p):
+    """The state vector after a step at a mean velocity of the mass, which grows by ``change``."""
+    return moved_freely(y, _advanced(y, step, p), change, step, p)
 
 
 @inner

@@ -9,7 +9,15 @@ a mass that sticks has a constant velocity.
 
 from wedgesweep import friction
 from wedgesweep.compiled import inlined
-from wedgesweep.effects import directional_friction, guide_friction, hooks, presliding, states, travel
+from wedgesweep.effects import (
+    directional_friction,
+    guide_friction,
+    hooks,
+    presliding,
+    series_compliance,
+    states,
+    travel,
+)
 from wedgesweep.excitation import acceleration, displacement, force, velocity
 from wedgesweep.friction import lugre_bristles as bristles
 from wedgesweep.systems.oscillator.modes import HELD, VELOCITY, X, crosses, slip, stuck
@@ -59,7 +67,12 @@ def support(t, y, mode, p):
 
 @inlined
 def damping(rate, y, mode, p):
-    """Force on the mass (N) of all dampers; none while a rod that they are behind crosses its play."""
+    """Force on the mass (N) of all dampers; none while a rod that they are behind crosses its play.
+
+    Behind a spring they are part of ``friction_force``.
+    """
+    if series_compliance.acts(p):
+        return 0.0
     if crosses(mode) and (p.oscillator.forced or not p.oscillator.absolute):
         return 0.0
     return hooks.damping(rate, y, p) - p.oscillator.damping * rate
@@ -84,6 +97,8 @@ def load(t, y, mode, p):
 @inlined
 def friction_force(y, mode, p):
     """Friction T (N) on a branch that no jump and no sticking holds, positive against positive slip."""
+    if series_compliance.acts(p):
+        return series_compliance.force(y, p)
     if crosses(mode):
         return 0.0
     rubbing, normal = slip(y, p), p.oscillator.normal_force

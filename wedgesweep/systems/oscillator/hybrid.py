@@ -9,6 +9,7 @@ from wedgesweep.effects import (
     damper_play,
     directional_friction,
     hooks,
+    series_compliance,
     states,
     travel,
 )
@@ -132,8 +133,9 @@ def driving_force(t, acceleration, y, mode, p):
 
 @implement(interface.already_moving, OSCILLATOR)
 @inlined
-def already_moving(y, p):
-    """The rod of a damper presses to the side to which the mass moves."""
+def already_moving(y, deflected, p):
+    """The rod of a damper presses to the side to which the mass moves, or pulls its spring."""
+    y = series_compliance.settled(y, slip(y, p), deflected, p)
     return damper_play.pressing(y, 1 if y[VELOCITY] >= 0.0 else -1, p)
 
 
@@ -146,8 +148,9 @@ def share_before_jump(y, step, p):
 
 @implement(interface.moved_freely, OSCILLATOR)
 @inlined
-def moved_freely(y, following, step, p):
-    """The rod of a damper moves between the ends of its play."""
+def moved_freely(y, following, change, step, p):
+    """The rod of a damper moves between the ends of its play, or pulls its spring."""
+    following = series_compliance.moved(y, following, slip(y, p), change, step, p)
     return damper_play.with_rod(following, damper_play.rod_after(y, slip(y, p) * step, p), p)
 
 
@@ -173,7 +176,9 @@ def _breakaway(now, y, direction, p):
 def _slip_events(now, y, mode, p, out):
     """Write the distances of slip to both ends of its branch, or of the load to where friction lets go."""
     value, branch = slip(y, p), mode.column
-    if crosses(mode):
+    if series_compliance.acts(p):
+        series_compliance.write_events(y, branch, SLIP, p, out)
+    elif crosses(mode):
         damper_play.write_events(y, SLIP, p, out)
     elif stuck(mode, p):
         out[SLIP] = _breakaway(now, y, -1, p)
@@ -242,6 +247,12 @@ def _crossing(segment):
 
 
 @inlined
+def _behind_spring(branch, segment):
+    """Mode on a branch of a damper behind a spring."""
+    return Mode(branch, 0, segment, 1 if branch == 0 else 0)
+
+
+@inlined
 def _beside(y, mode, higher, p):
     """Mode on the lower (0) or higher (1) side of the jump that holds the slip velocity."""
     if creeps(p):
@@ -287,6 +298,8 @@ def initial_mode(t, y, p):
 @inner
 def _mode_at(t, y, segment, p):
     """Mode that a state is in, at a segment of the travel."""
+    if series_compliance.acts(p):
+        return _behind_spring(series_compliance.branch(y, p), segment)
     rubbing = slip(y, p)
     sign = 1 if rubbing >= 0.0 else -1
     direction = sign if directional_friction.acts(p) else 0
@@ -326,6 +339,8 @@ def _cross(t, y, mode, upward, p):
 @inner
 def _transition(t, y, mode, place, p):
     upward = place % 2
+    if series_compliance.acts(p) and place < TRAVEL:
+        return y, _behind_spring(mode.column + 2 * upward - 1, mode.segment)
     if crosses(mode) and place < TRAVEL:
         y = damper_play.pressing(y, 2 * upward - 1, p)
         return y, _mode_at(t, y, mode.segment, p)

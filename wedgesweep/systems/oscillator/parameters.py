@@ -63,13 +63,14 @@ OF_SPRING = ("bolster_stiffness", "backlash")
 LATERAL = "guide_friction"
 # The first one scales its coefficients, the others change the law.
 OF_FRICTION = ("friction_level", "stribeck", "presliding", "ageing", "directional_friction")
+# Those that need a rod between the mass and what damps it, and those of them behind which all damping is.
+OF_ROD = ("damper_play", "series_compliance")
+WITH_DAMPING = "series_compliance"
 # Effects that a law has no place for.
 OF_LAW = {
-    "lugre": ("stribeck", "presliding", "ageing", "guide_friction", "damper_play"),
+    "lugre": ("stribeck", "presliding", "ageing", "guide_friction", *OF_ROD),
     "hyperbolic": ("stribeck",),
 }
-# One that needs a rod between the mass and what damps it.
-OF_ROD = "damper_play"
 # Marks records of the kit without effects that have mechanics of their own.
 PLAIN = "plain_oscillator"
 
@@ -153,8 +154,8 @@ def record(
     own["kit"] = bool(records.acting(p, parts)) or law == bristles.NAME or swings
     if law == bristles.NAME:
         _set_bristles(p, oscillator)
-    if p["presliding"]["length"] > 0.0:
-        p["friction"]["set_valued"] = 0  # bristles yield before they slip
+    if p["presliding"]["length"] > 0.0 or p["series_compliance"]["stiffness"] > 0.0:
+        p["friction"]["set_valued"] = 0  # bristles and springs yield before they slip
     return case
 
 
@@ -210,7 +211,7 @@ def friction_decay(p: np.void) -> float:
 
 def _changes_friction(p: np.void) -> bool:
     """Whether an effect or bristles change the law of friction."""
-    return bool(records.acting(p, (*OF_FRICTION[1:], OF_ROD))) or bool(p[bristles.NAME]["stiffness"])
+    return bool(records.acting(p, (*OF_FRICTION[1:], *OF_ROD))) or bool(p[bristles.NAME]["stiffness"])
 
 
 def _breakaway_force(p: np.void) -> float:
