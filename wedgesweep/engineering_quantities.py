@@ -131,8 +131,8 @@ def _of_model(models: _Models) -> dict[str, xr.DataArray]:
 def _wedge_force(records: np.ndarray, spring: np.ndarray, sense: float) -> np.ndarray:
     """Vertical force (N) of both wedges on a bolster that moves slowly, shape (n,).
 
-    ``spring``: force (N) of each wedge's spring; ``sense``: 1 up, -1 down, 0 without friction. NaN where a face
-    would have to pull, or where the wedges lock.
+    ``spring``: force (N) of each wedge's spring; ``sense``: 1 up, -1 down, 0 without friction. NaN where a
+    face would have to pull, or where the wedges lock.
     """
     s, g, mu = records["suspension"], records["geometry"], records["friction"]["mu_d"]
     column, bolster = sense * mu, sense * mu * np.sign(g["bolster_ratio"])

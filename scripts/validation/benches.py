@@ -68,6 +68,10 @@ def _draw_any_rig(one: DataSet, random: np.random.Generator, attempt: int) -> Dr
     return _draw_new_rig(rigs.any_size(random), one, random, attempt)
 
 
+def _draw_constant(one: DataSet, random: np.random.Generator, attempt: int) -> Draft | None:
+    return _draw_new_rig(rigs.constant_damping(random), one, random, attempt)
+
+
 def _draw_oscillator(one: DataSet, random: np.random.Generator, attempt: int) -> Draft | None:
     draft = _draw_new_rig(rigs.oscillator(one.index, random), one, random, attempt)
     if draft is not None:
@@ -94,4 +98,5 @@ BENCHES: dict[str, Callable[[DataSet, np.random.Generator, int], Draft | None]] 
     "errors-only": _draw_imperfect,
     "random-rig": _draw_any_rig,
     "oscillator": _draw_oscillator,
+    "constant": _draw_constant,
 }

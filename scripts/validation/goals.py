@@ -114,6 +114,7 @@ def goals(sets: Sets) -> list[Goal]:
         _listed("  they leave more than is allowed for", errors, judge.errs_by_more),
         _at_least("rig of any size: exact or in a tie", sets.of("random-rig"), judge.exact_or_tied, 0.95),
         _at_least("oscillator: exact or in a tie", sets.of("oscillator"), judge.exact_or_tied, 0.95),
+        _at_least("constant damping: exact or in a tie", sets.of("constant"), judge.exact_or_tied, 0.95),
         *(line for kind in TIME_KINDS for line in _of_time_records(kind, sets.of(kind))),
         _coverage(f"{WORSE}: 95 % intervals cover", [r for r in worse if r["truth"] and judge.exact(r)]),
         _coverage("95 % intervals (single effects, exact) cover", sets.exact_singles),

@@ -149,6 +149,7 @@ HIDE: dict[str, Callable[[DataSet, Draft, np.random.Generator, int], bool]] = {
     "errors-only": _hide_nothing,
     "random-rig": _hide_possible,
     "oscillator": _hide_possible,
+    "constant": _hide_possible,
 }
 
 

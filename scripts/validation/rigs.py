@@ -21,6 +21,8 @@ MASS_KG, FREQUENCY_HZ = (0.1, 1e4), (0.5, 50.0)
 WEDGE_ANGLE_DEG, COLUMN_ANGLE_DEG = (30.0, 45.0), (-6.0, 6.0)
 # Proportions of the bench, about which others are drawn, and how far their logarithm may be off.
 WEDGE_MASS, SIDE_FRAME_MASS, WEDGE_SPRING, SPREAD = 0.17 / 0.70, 0.46 / 0.70, 2.55 / 5.10, 0.3
+# Force of each wedge's spring that stands on the bolster: about 1.5 to 3 times the weight of a wedge.
+PRELOAD_N = (2.8, 4.5)
 # Damping ratio of an oscillator, friction over its weight, and its travel over the static deflection by the
 # force of friction.
 DAMPING, FRICTION, TRAVEL = (0.005, 0.05), (0.02, 0.3), 3.0
@@ -105,6 +107,12 @@ class Rig:
 def bench(column_angle_deg: float) -> Rig:
     """The paper's bench with its column at some angle."""
     return Rig({"suspension": {"column_angle_deg": column_angle_deg}})
+
+
+def constant_damping(random: np.random.Generator) -> Rig:
+    """The paper's bench with the springs of its wedges on the bolster."""
+    preload = float(f"{random.uniform(*PRELOAD_N):.3g}")
+    return Rig({"suspension": {"damping": "constant", "wedge_preload_N": preload}})
 
 
 def any_size(random: np.random.Generator) -> Rig:

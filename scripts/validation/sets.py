@@ -35,6 +35,7 @@ ALL = {
     "mixed": Kind(20),  # the same in steady tests, releases and a loop together
     "worse": Kind(180),  # any of these three, made worse as recorders do; see worse.py
     "damper": Kind(40),  # one effect of a damper, or none, in its loops; see time_records.py
+    "constant": Kind(12, STRONG),  # one effect on a bench with constant damping
 }
 KINDS = tuple(ALL)
 
