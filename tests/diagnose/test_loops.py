@@ -300,8 +300,13 @@ def test_a_hidden_effect_is_found(tmp_path, effect):
 STRUT = DAMPER.replace("normal_force_N = 10.0", "normal_force_N = 200.0")
 OF_DAMPERS = {
     "series_compliance": {"stiffness": 1e5, "coefficient": 500.0},
+    "degressive_damping": {"coefficient": 8e3, "velocity": 0.02, "asymmetry": 0.3},
+    "asymmetric_spring": {"asymmetry": 0.3},
 }
-NEIGHBOURS = ("friction_level", "viscous_damping", "directional_damping", "quadratic_drag", "damper_play")
+NEIGHBOURS = (
+    *("friction_level", "viscous_damping", "directional_damping", "quadratic_drag", "damper_play"),
+    *("presliding", "bolster_stiffness", "cubic_stiffness", "backlash"),
+)
 
 
 @pytest.mark.few(1)
@@ -309,7 +314,7 @@ NEIGHBOURS = ("friction_level", "viscous_damping", "directional_damping", "quadr
 def test_what_is_missing_of_a_damper_is_found_among_its_neighbours(tmp_path, effect):
     hidden = OF_DAMPERS[effect]
     path = write(tmp_path, STRUT, {effect: hidden}, motions=((0.01, 1.1, 6.0),), noise=(1e-6, 0.5))
-    found = diagnosed(path, [*OF_DAMPERS, *NEIGHBOURS, "presliding"])
+    found = diagnosed(path, [*OF_DAMPERS, *NEIGHBOURS])
     assert (found.verdict, [cause["effect"] for cause in found.causes]) == ("named", [effect])
     keys = {each.key: each for each in EFFECTS[effect].quantities}
     for key, estimate in found.causes[0]["parameters"].items():

@@ -37,7 +37,9 @@ STRENGTHS = {
     "viscous_damping": {"coefficient": 5.0},
     "directional_damping": {"coefficient": 5.0, "asymmetry": 0.6},
     "quadratic_drag": {"coefficient": 100.0},
+    "degressive_damping": {"coefficient": 20.0, "velocity": 0.03, "asymmetry": 0.4, "exponent": 0.5},
     "cubic_stiffness": {"coefficient": 4e7},
+    "asymmetric_spring": {"asymmetry": 0.3},
     "backlash": {"clearance": 3e-4},
     "guide_friction": {"force": 0.2},
     "end_stop": {"clearance": 1e-3, "stiffness": 500.0},
@@ -192,3 +194,38 @@ def test_play_lengthens_the_period_by_the_time_of_its_crossing(solver):
     period = 2.0 * pi / OMEGA_N + crossing
     assert turns == pytest.approx([0.5 * period, period], rel=1e-6)
     assert np.abs(samples.x).max() == pytest.approx(start, rel=1e-6)
+
+
+@EACH_SOLVER
+@pytest.mark.parametrize("asymmetry", [0.4, -0.4])
+def test_a_spring_that_is_stiffer_to_one_side_swings_farther_and_longer_to_the_other(solver, asymmetry):
+    start = 2e-3
+    samples = free(solver, start, asymmetric_spring={"asymmetry": asymmetry})
+    ratio = np.sqrt((1.0 + asymmetry) / (1.0 - asymmetry))
+    assert [-samples.x.max(), -samples.x.min()] == pytest.approx([-start * ratio, start], rel=1e-6)
+    t, v = samples.t[1:] - samples.t[0], samples.velocity[1:]
+    last = np.flatnonzero(np.diff(np.sign(v)))[:2]
+    turns = t[last] - v[last] * (t[last + 1] - t[last]) / (v[last + 1] - v[last])
+    quarters = 0.5 * pi / OMEGA_N / np.sqrt([1.0 + asymmetry, 1.0 - asymmetry])
+    assert turns == pytest.approx([quarters.sum(), 2.0 * quarters.sum()], rel=1e-6)
+
+
+@pytest.mark.parametrize("asymmetry", [0.0, 0.5])
+def test_degressive_damping_is_viscous_when_slow_and_friction_when_fast(asymmetry):
+    start, coefficient = 2e-3, 6.0
+
+    def swings(**effects):
+        x = -free("event-driven", start, **effects).x
+        return np.array([x.min(), x[x.size // 4 : 3 * x.size // 4].max()])
+
+    def degressive(coefficient, velocity):
+        numbers = {"coefficient": coefficient, "velocity": velocity, "asymmetry": asymmetry, "exponent": 0.0}
+        return swings(degressive_damping=numbers)
+
+    viscous = swings(directional_damping={"coefficient": coefficient, "asymmetry": asymmetry})
+    assert degressive(coefficient, 1e5) == pytest.approx(viscous, rel=1e-5)
+    # Dry friction F takes 2F/k of each swing.
+    force, slow = 0.05 * K * start, 1e-5
+    lost = 2.0 * force / K * np.array([1.0 - asymmetry, 1.0 + asymmetry])
+    dry = [-start + lost[0], start - lost.sum()]
+    assert degressive(force / slow, slow) == pytest.approx(dry, rel=1e-3)

@@ -18,8 +18,8 @@ NAMES = (
     *("cross_slip", "column_compliance"),
     lift_off.NAME,
     *("jamming", "damper_play", "series_compliance"),
-    *("viscous_damping", "directional_damping", "quadratic_drag"),
-    *("cubic_stiffness", "backlash", "guide_friction", "end_stop", "empirical_force"),
+    *("viscous_damping", "directional_damping", "quadratic_drag", "degressive_damping"),
+    *("cubic_stiffness", "asymmetric_spring", "backlash", "guide_friction", "end_stop", "empirical_force"),
     *("input_distortion", "stray_vibration", "fixture_resonance"),
     *("velocity_lag", "displacement_gain", "input_gain", "force_gain", "channel_delay"),
 )

@@ -58,7 +58,7 @@ ADJUSTED = (*SCALED, OF_LOAD)
 # A motion of the base beside the input.
 OF_BASE = "stray_vibration"
 # Effects on the spring.
-OF_SPRING = ("bolster_stiffness", "backlash")
+OF_SPRING = ("bolster_stiffness", "asymmetric_spring", "backlash")
 # Friction beside that of the normal force, and effects on the latter.
 LATERAL = "guide_friction"
 # The first one scales its coefficients, the others change the law.
