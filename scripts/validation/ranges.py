@@ -62,6 +62,7 @@ OF_DAMPERS = {
     "series_compliance": Leading("stiffness_N_per_mm", 5000.0, 4.0),
     "degressive_damping": Leading("coefficient_N_s_per_m", 1e-3, 180.0),
     "asymmetric_spring": Leading("asymmetry", 1e-4, 0.8, 0.0, 0.5),
+    "position_friction": Leading("share", 1e-4, 0.8),
 }
 # Candidates that no campaign hides: they came later than the sets on record, which stay as they are.
 NOT_HIDDEN = ("jamming", "input_gain", "force_gain", "channel_delay")
@@ -75,6 +76,10 @@ OTHERS: dict[str, dict[str, tuple[float, float, str]]] = {
     "cross_slip": {"phase_deg": (-88.0, 88.0, UNIFORM)},
     # With less asymmetry it is viscous_damping.
     "directional_damping": {"asymmetry": (0.3, 0.9, EITHER_SIGN)},
+    "position_friction": {
+        "share_phase_deg": (-175.0, 175.0, UNIFORM),
+        "wavelength_mm": (2.0, 10.0, LOGARITHMIC),
+    },
     "degressive_damping": {
         "velocity_mm_per_s": (5.0, 50.0, LOGARITHMIC),
         "asymmetry": (0.0, 0.5, EITHER_SIGN),

@@ -302,10 +302,11 @@ OF_DAMPERS = {
     "series_compliance": {"stiffness": 1e5, "coefficient": 500.0},
     "degressive_damping": {"coefficient": 8e3, "velocity": 0.02, "asymmetry": 0.3},
     "asymmetric_spring": {"asymmetry": 0.3},
+    "position_friction": {"share": 0.5, "share_phase": 0.5, "wavelength": 0.04},
 }
 NEIGHBOURS = (
     *("friction_level", "viscous_damping", "directional_damping", "quadratic_drag", "damper_play"),
-    *("presliding", "bolster_stiffness", "cubic_stiffness", "backlash"),
+    *("directional_friction", "presliding", "bolster_stiffness", "cubic_stiffness", "backlash"),
 )
 
 
@@ -318,6 +319,8 @@ def test_what_is_missing_of_a_damper_is_found_among_its_neighbours(tmp_path, eff
     assert (found.verdict, [cause["effect"] for cause in found.causes]) == ("named", [effect])
     keys = {each.key: each for each in EFFECTS[effect].quantities}
     for key, estimate in found.causes[0]["parameters"].items():
+        if keys[key].angle:
+            continue  # where x = 0 is, nobody knows
         true = hidden[keys[key].name] / keys[key].factor
         assert estimate["value"] == pytest.approx(true, rel=0.03), key
 

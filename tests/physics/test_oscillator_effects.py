@@ -32,6 +32,7 @@ STRENGTHS = {
     "presliding": {"length": 2e-4},
     "ageing": {"rate": 0.02, "time": 0.01},
     "directional_friction": {"asymmetry": 0.3},
+    "position_friction": {"share": 0.5, "share_phase": 0.4, "wavelength": 5e-3},
     "damper_play": {"clearance": 3e-4},
     "series_compliance": {"stiffness": 1e4, "coefficient": 3.0},
     "viscous_damping": {"coefficient": 5.0},
@@ -229,3 +230,22 @@ def test_degressive_damping_is_viscous_when_slow_and_friction_when_fast(asymmetr
     lost = 2.0 * force / K * np.array([1.0 - asymmetry, 1.0 + asymmetry])
     dry = [-start + lost[0], start - lost.sum()]
     assert degressive(force / slow, slow) == pytest.approx(dry, rel=1e-3)
+
+
+@EACH_SOLVER
+def test_friction_along_the_stroke_takes_its_work_from_a_free_swing(solver):
+    """k/2 (A^2 - B^2) = F times the integral of the factor from one turn to the next."""
+    start, force, share, phase, length = 2e-3, 0.2, 0.6, 0.7, 5e-3
+    effect = {"share": share, "share_phase": phase, "wavelength": length}
+    numbers = oscillator(normal_force=1.0)
+    record = parameters.record(
+        "coulomb", 1e-12, OMEGA_N, numbers, coulomb(force), {"position_friction": effect}, "force"
+    )
+    run = SOLVERS[solver].solve(record, Window(OMEGA_N, 0, 1, 4096), 1e-11, inf, start=(start, 0.0))
+
+    def work(x):
+        wave = share * length / (2.0 * pi) * np.cos(2.0 * pi * x / length + phase)
+        return force * (x - wave)
+
+    low = brentq(lambda x: 0.5 * K * (start**2 - x**2) - (work(start) - work(x)), -start, -0.1 * start)
+    assert -run.samples.x.max() == pytest.approx(low, rel=1e-6)

@@ -15,6 +15,7 @@ Numbers = Mapping[str, Mapping[str, float]]
 NAMES = (
     *("bolster_stiffness", "wedge_stiffness", "bolster_mass", "preload", "friction_level"),
     *("stribeck", "presliding", "ageing", "directional_friction", "load_dependent_friction"),
+    "position_friction",
     *("cross_slip", "column_compliance"),
     lift_off.NAME,
     *("jamming", "damper_play", "series_compliance"),

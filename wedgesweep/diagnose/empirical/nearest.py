@@ -21,7 +21,7 @@ FORMS: dict[str, Form] = {
     "damper that is degressive (degressive_damping)": lambda z, v: np.sign(v) * np.sqrt(np.abs(v)),
     "dry friction (guide_friction, friction_level)": lambda z, v: np.sign(v),
     "friction that falls with speed (stribeck)": lambda z, v: np.sign(v) * np.exp(-np.abs(v) / 0.2),
-    "friction that differs along the stroke": lambda z, v: np.sign(v) * z,
+    "friction that differs along the stroke (position_friction)": lambda z, v: np.sign(v) * z,
     "friction that grows with travel": lambda z, v: np.sign(v) * np.abs(z),
     "damping that differs along the stroke": lambda z, v: v * z,
     "damping that grows with travel": lambda z, v: v * z**2,

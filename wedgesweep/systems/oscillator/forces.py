@@ -13,6 +13,7 @@ from wedgesweep.effects import (
     directional_friction,
     guide_friction,
     hooks,
+    position_friction,
     presliding,
     series_compliance,
     states,
@@ -97,6 +98,12 @@ def load(t, y, mode, p):
 @inlined
 def friction_force(y, mode, p):
     """Friction T (N) on a branch that no jump and no sticking holds, positive against positive slip."""
+    return position_friction.scaled(_mean_friction(y, mode, p), y[X], p)
+
+
+@inlined
+def _mean_friction(y, mode, p):
+    """Friction (N) as it is along the stroke on average."""
     if series_compliance.acts(p):
         return series_compliance.force(y, p)
     if crosses(mode):

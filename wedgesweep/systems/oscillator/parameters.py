@@ -62,7 +62,10 @@ OF_SPRING = ("bolster_stiffness", "asymmetric_spring", "backlash")
 # Friction beside that of the normal force, and effects on the latter.
 LATERAL = "guide_friction"
 # The first one scales its coefficients, the others change the law.
-OF_FRICTION = ("friction_level", "stribeck", "presliding", "ageing", "directional_friction")
+OF_FRICTION = (
+    *("friction_level", "stribeck", "presliding", "ageing", "directional_friction"),
+    "position_friction",
+)
 # Those that need a rod between the mass and what damps it, and those of them behind which all damping is.
 OF_ROD = ("damper_play", "series_compliance")
 WITH_DAMPING = "series_compliance"

@@ -1,0 +1,51 @@
+"""Friction that varies along the stroke, as of a bore that is not round, or of a rod worn in the middle.
+
+A harmonic of the place: at a wavelength of several strokes it rises or falls along them. It scales all dry
+friction of the surface. Neutral and default: share = 0. Default: phase = 0; wavelength must be given.
+"""
+
+from math import nan, pi, sin
+
+from wedgesweep.compiled import inlined, term
+from wedgesweep.effects.base import NUMERICAL, OSCILLATOR, Effect
+from wedgesweep.quantity import Quantity
+
+EQUATIONS = ("mu -> mu (1 + share sin(2 pi x/wavelength + share_phase))",)
+
+EFFECT = Effect(
+    name="position_friction",
+    family="friction-law",
+    branch=NUMERICAL,
+    systems=(OSCILLATOR,),
+    of_loops=True,
+    excludes=("series_compliance",),
+    meaning="friction that varies along the stroke",
+    quantities=(
+        Quantity("share", 0.0, "amplitude over the mean", minimum=0.0, maximum=1.0, search=(0.0, 0.9)),
+        Quantity("share_phase_deg", 0.0, "phase at x = 0", search=(-180.0, 180.0)),
+        Quantity(
+            "wavelength_mm",
+            nan,
+            "length of a wave",
+            above=0.0,
+            off=1.0,
+            search=(1.5, 12.0),
+            logarithmic=True,
+        ),
+    ),
+    extends=("share",),
+)
+
+
+@inlined
+def _factor(x, p):
+    own = p.position_friction
+    if own.share == 0.0:
+        return 1.0
+    return 1.0 + own.share * sin(2.0 * pi * x / own.wavelength + own.share_phase)
+
+
+@term("position_friction", off="friction")
+def scaled(friction, x, p):
+    """Friction (N) at a place x (m), from the mean along the stroke."""
+    return _factor(x, p) * friction
