@@ -15,7 +15,6 @@ from wedgesweep.diagnose.search import (
     base_fit,
     beside_stated,
     best_of,
-    from_special_cases,
     refit_base,
     single_fit,
 )
@@ -127,8 +126,8 @@ def test_the_base_model_goes_on_from_where_an_extension_got(monkeypatch):
     with monkeypatch.context() as alone:
         alone.setattr("wedgesweep.diagnose.search.refit_without_influential_tests", lambda fit: fit)
         alone.setattr(
-            "wedgesweep.diagnose.search._from_several",
-            lambda search, model, evaluations: minimise(model, evaluations[0], iterations=1),
+            "wedgesweep.diagnose.search.best_of",
+            lambda model, evaluations, *_, **__: minimise(model, evaluations[0], iterations=1),
         )
         alone.setattr("wedgesweep.diagnose.search._nuisances_held", lambda model, evaluation: evaluation)
         short = base_fit(search).base
@@ -138,18 +137,3 @@ def test_the_base_model_goes_on_from_where_an_extension_got(monkeypatch):
     again = refit_base(Explained(search, short, [search.explanation(minimise(model, there))], {})).base
     assert again.fit.p > 1e-3
     assert refit_base(Explained(search, again, [short], {})).base is again
-
-
-def test_an_effect_fits_no_worse_than_a_special_case_of_it():
-    """A damper; the fit of one that differs by direction has ended at a wrong asymmetry."""
-    data = drawn({"viscous_damping": {"coefficient": 4.0}})
-    search, _, (damper, other) = searched(data, "viscous_damping", "directional_damping")
-    model = other.fit.model
-    wrong = model.hypothesis.at({"directional_damping": {"coefficient_N_s_per_m": 1.5, "asymmetry": 0.9}})
-    evaluation = model.evaluate(replace(other.fit.point, x=wrong))
-    stuck = search.explanation(replace(other.fit, evaluation=evaluation))
-    assert stuck.fit.chi2 > damper.fit.chi2 + 100.0
-    same, mended = from_special_cases(search, [damper, stuck])
-    assert same is damper
-    assert mended.effects == ("directional_damping",)
-    assert mended.fit.chi2 < damper.fit.chi2 + 0.1

@@ -17,12 +17,12 @@ def searched():
 def test_stages_tell_what_they_changed_and_can_be_left_out():
     known = searched()
     told = {row["stage"]: row for row in summary(known.search.budget.changes)}
-    assert {"best pairs", "special cases"} <= told.keys()
+    assert {"best pairs", "base model again"} <= told.keys()
     assert told["best pairs"]["work"] > 0.0
     assert ("displacement_gain", "velocity_lag") in [each.effects for each in known.explanations]
-    with without("best pairs", "special cases"):
+    with without("best pairs", "base model again"):
         known = searched()
-    assert not {"best pairs", "special cases"} & {each.stage for each in known.search.budget.changes}
+    assert not {"best pairs", "base model again"} & {each.stage for each in known.search.budget.changes}
     assert {len(each.effects) for each in known.explanations} == {1}
 
 

@@ -1,6 +1,5 @@
 """Transients: free motions in time, from files to a verdict."""
 
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,16 +7,10 @@ from scipy.signal import lfilter
 
 from wedgesweep import api, excitation
 from wedgesweep.config import parse
-from wedgesweep.diagnose.diagnosis import explain
 from wedgesweep.diagnose.least_squares import minimise
 from wedgesweep.diagnose.search import (
     Search,
     base_fit,
-    contenders,
-    far_off,
-    followed,
-    from_shared_nuisances,
-    single_fits,
 )
 from wedgesweep.diagnose.transient.from_measurement import transient_data
 from wedgesweep.effects import EFFECTS, merge
@@ -133,53 +126,10 @@ def test_a_hidden_effect_is_found(tmp_path, effect):
         assert estimate["value"] * unit == pytest.approx(true, rel=0.02), key
 
 
-@pytest.mark.acceptance
-def test_a_start_that_one_explanation_has_found_is_tried_by_others(tmp_path):
-    data = transient_data(read(write(tmp_path, effects={"viscous_damping": {"coefficient": 2.0}})))
-    names = ("viscous_damping", "directional_damping")
-    search, _, (damper, other), _ = single_fits(base_fit(Search.of(data, names)))
-    model, nuisance = damper.fit.model, damper.fit.point.nuisance.copy()
-    nuisance[0, 1] += 0.5
-    astray = model.evaluate(replace(damper.fit.point, nuisance=nuisance))
-    stuck = search.explanation(replace(damper.fit, evaluation=astray))
-    assert stuck.fit.chi2 > other.fit.chi2 + 100.0
-    found = {each.effects: each for each in from_shared_nuisances(search, [stuck, other])}
-    assert found[other.effects] is other
-    assert found[damper.effects].fit.chi2 == pytest.approx(damper.fit.chi2, abs=0.1)
-
-
-@pytest.mark.acceptance
-def test_a_fit_that_is_far_off_waits_until_nothing_is_adequate(tmp_path):
-    data = transient_data(read(write(tmp_path, effects={"viscous_damping": {"coefficient": 20.0}})))
-    known = base_fit(Search.of(data, ("viscous_damping", "cubic_stiffness")))
-    search, _, (damper, spring), _ = single_fits(known)
-    assert far_off(spring.fit)
-    assert not far_off(damper.fit)
-    assert contenders(search, [spring, damper]) == [damper]
-    assert contenders(search, [spring]) == [spring]
-    (again,) = followed(search, [spring])
-    assert again.fit.converged
-    assert again.fit.chi2 <= spring.fit.chi2
-    # Alone it is followed to its minimum.
-    (alone,) = explain(replace(search, effects=("cubic_stiffness",))).explanations
-    assert alone.fit.chi2 == pytest.approx(again.fit.chi2, rel=1e-3)
-
-
 def test_without_a_candidate_the_base_model_is_all_there_is(tmp_path):
     path = write(tmp_path, effects={"viscous_damping": {"coefficient": 20.0}})
     found = diagnosed(path, ["cross_slip"])  # of a sine as the input
     assert (found.verdict, found.causes) == ("none-of-mine", [])
-
-
-def test_early_rounds_of_a_search_see_the_worst_window_of_each_few(tmp_path):
-    starts = [(0.01, 0.0), (0.012, 0.0)]
-    data = transient_data(read(write(tmp_path, starts=starts, samples=18_000, noise=1e-4)))
-    here = base_fit(Search.of(data, [])).base.fit.evaluation
-    rows = data.representative(here)
-    assert 8 <= rows.size < data.tests
-    assert {data.windows[row].number for row in rows} == {0, 1}
-    assert np.argmax(here.chi2_by_test) in rows
-    assert data.subset(rows[:4]).representative(here).tolist() == [0, 1, 2, 3]
 
 
 def test_nothing_is_missing_where_nothing_is(tmp_path):

@@ -313,10 +313,6 @@ class Concatenation(FitData):
                     each[i] = evaluation.point
         return model.evaluate_all([self._whole(each) for each in by_point])
 
-    def representative(self, evaluation: Evaluation) -> np.ndarray:
-        own = self._each("representative", each=self._evaluations(evaluation))
-        return np.concatenate([rows.start + some for rows, some in zip(self.layout.rows, own, strict=True)])
-
     def held_as_stated(self) -> Self:
         return self._with(self._each("held_as_stated"))
 

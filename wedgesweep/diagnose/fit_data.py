@@ -269,10 +269,6 @@ class FitData(Protocol):
         """Evaluations of points, each test's nuisance parameters without a prior searched globally."""
         return model.evaluate_all(points)
 
-    def representative(self, evaluation: Evaluation) -> np.ndarray:
-        """Rows of tests that the first rounds of a search are content with, from what a base fit leaves."""
-        return np.arange(self.tests)
-
     def held_as_stated(self) -> Self:
         """The data with narrow priors: nuisance parameters that have any stay as stated."""
         return self

@@ -22,10 +22,9 @@ from wedgesweep.diagnose.explanation import POSSIBLE, Explanation, best_of_each,
 from wedgesweep.diagnose.fit_data import FitData
 from wedgesweep.diagnose.fit_parameters import Hypothesis
 from wedgesweep.diagnose.least_squares import BRIEF, from_other_nuisances, minimise
-from wedgesweep.diagnose.model import ROUGH, TOLERANCE, Fit, Model, unfitted
+from wedgesweep.diagnose.model import ROUGH, TOLERANCE, Fit, Model
 from wedgesweep.diagnose.progress import Step
 from wedgesweep.diagnose.trimmed_refit import refit_without_influential_tests
-from wedgesweep.effects import EFFECTS
 
 
 class Round(NamedTuple):
@@ -49,8 +48,6 @@ FAR = 100.0
 LEADING = 8
 # A fit explains something, or is far better, if it leaves less than this share of another one's chi-squared.
 NOTABLE = 0.9
-# A test fits markedly better if its chi-squared is this much less.
-MARKED = 9.0
 # Work (see work.py) that a search may spend for each test, the least number of tests that it counts, and the
 # share that pairs get even if unknown amplitudes made single effects expensive.
 WORK_PER_TEST, FEWEST_COUNTED, PAIRS_SHARE = 1e5, 12, 1.0 / 3.0
@@ -233,7 +230,7 @@ def base_fit(search: Search) -> Explained:
     if not search.uses("starts of uncertain numbers", len(points) > 1):
         points = points[:1]
     evaluations = search.nuisances_searched(model, points)
-    fit = _from_several(search, model, evaluations)
+    fit = best_of(model, evaluations, BASE_SCHEDULE, each=search.each)
     if len(model.uncertain) and fit.p < POSSIBLE:
         fit = search.tried(
             "nuisances held", fit, lambda fit: min(fit, _from_held(search, model, evaluations), key=_chi2)
@@ -248,17 +245,7 @@ def _from_held(search: Search, model: Model, evaluations: Sequence[Evaluation]) 
     They may have made up for wrong values of uncertain parameters.
     """
     held = search.each(lambda evaluation: _nuisances_held(model, evaluation), evaluations)
-    return _from_several(search, model, held)
-
-
-def _from_several(search: Search, model: Model, evaluations: Sequence[Evaluation]) -> Fit:
-    """The best fit of the base model from several evaluations, by successive halving."""
-    for entering, iterations in BASE_SCHEDULE:
-        follow = partial(minimise, model, iterations=iterations)
-        fits = search.each(follow, _leading(evaluations, entering))
-        evaluations = [fit.evaluation for fit in fits]
-    best = min(fits, key=_chi2)
-    return best if best.converged else minimise(model, best.evaluation)
+    return best_of(model, held, BASE_SCHEDULE, each=search.each)
 
 
 def refit_base(known: Explained) -> Explained:
@@ -335,13 +322,8 @@ def single_fit(search: Search, effect: str, base: Fit) -> SingleFit:
             evaluations = evaluations + beside_stated(model, fresh)
     short = search.uses("short rounds", base.p >= POSSIBLE)
     schedule = SHORT_SCHEDULE if short else SCHEDULE
-    rows = data.representative(base.evaluation)
-    if not search.uses("worst windows first", rows.size < data.tests):
-        rows = np.arange(data.tests)
     drops = search.uses("hopeless fits end", here=True)
-    limit = CUT_OFF * float(base.evaluation.chi2_by_test[rows].sum()) if drops else inf
-    waits = search.uses("far fits wait", data.shares_nuisances)
-    fit = best_of(model, evaluations, schedule, limit, rows, waits=waits)
+    fit = best_of(model, evaluations, schedule, CUT_OFF * base.chi2 if drops else inf)
     if _brings_alignment(data, effect):
         fit = _aligned(search, fit)
     return SingleFit(search.explanation(fit), scan, fit.model.data)
@@ -372,62 +354,6 @@ def contenders(search: Search, found: Sequence[Explanation]) -> list[Explanation
     return [each for each in best if not far_off(each.fit)]
 
 
-def followed(search: Search, found: Sequence[Explanation]) -> list[Explanation]:
-    """Explanations, continued to their minimum where they have not converged."""
-
-    def continued(each: Explanation) -> Explanation:
-        fit = each.fit
-        return each if fit.converged else search.explanation(minimise(fit.model, fit.evaluation))
-
-    return search.each(continued, found)
-
-
-def from_special_cases(search: Search, found: Sequence[Explanation]) -> list[Explanation]:
-    """Explanations by single effects, each refitted from its special cases that fit better, if any do."""
-    fits = {each.effects: each.fit for each in found}
-
-    def refitted(each: Explanation) -> Explanation:
-        (effect,) = each.effects
-        special = [fits[part,] for part in EFFECTS[effect].contains if (part,) in fits]
-        better = [_from_special_case(each.fit, fit) for fit in special if fit.chi2 < each.fit.chi2]
-        best = min([each.fit, *better], key=_chi2)
-        return each if best is each.fit else search.explanation(best)
-
-    return search.each(refitted, found)
-
-
-def from_shared_nuisances(search: Search, found: Sequence[Explanation]) -> list[Explanation]:
-    """All explanations; leading ones begin again where nuisance parameters of another fit a test better.
-
-    A single start that a fit cannot leave may decide between two explanations.
-    """
-    if not (found and search.data.shares_nuisances):
-        return list(found)
-    leading = contenders(search, found)
-    least = np.min([each.fit.evaluation.chi2_by_test for each in leading], axis=0)
-
-    def refitted(each: Explanation) -> Explanation:
-        fit = each.fit
-        if not (fit.evaluation.chi2_by_test > least + MARKED).any():
-            return each
-        tried = [replace(fit.point, nuisance=other.fit.point.nuisance) for other in leading]
-        start = replace(fit.point, nuisance=fit.model.best_nuisances(tried))
-        again = minimise(fit.model, fit.model.evaluate(start))
-        return search.explanation(again) if again.chi2 < fit.chi2 else each
-
-    return best_of_each([*search.each(refitted, leading), *found], penalised)
-
-
-def _from_special_case(fit: Fit, special: Fit) -> Fit:
-    """A single effect fitted from the numbers of a special case, its other numbers neutral."""
-    (effect,), (part,) = fit.effects, special.effects
-    neutral = {quantity.key: quantity.neutral for quantity in EFFECTS[effect].quantities}
-    model = replace(special.model, hypothesis=fit.model.hypothesis)
-    own = model.hypothesis.at({effect: neutral | special.values[part]})
-    x = np.r_[own, special.x[special.model.size :]]
-    return minimise(model, model.evaluate(replace(special.point, x=x)))
-
-
 def refit_best(search: Search, found: Sequence[Explanation]) -> list[Explanation]:
     """Explanations, best first; impossible ones among the best are refitted without influential tests.
 
@@ -450,8 +376,7 @@ def best_of(
     evaluations: Sequence[Evaluation],
     schedule: Sequence[Round] = SCHEDULE,
     limit: float = np.inf,
-    rows: np.ndarray | None = None,
-    waits: bool = False,
+    each: Callable[..., Iterable[Fit]] = map,
 ) -> Fit:
     """Fit from several evaluations by successive halving; the best fit is continued to its minimum.
 
@@ -465,42 +390,17 @@ def best_of(
         Rounds, into each of which fewer fits enter.
     limit : float
         The search ends after a round whose best fit has a larger chi-squared than this.
-    rows : ndarray of int, optional
-        Tests that the rounds are content with; by default all.
-    waits : bool
-        Whether a best fit that is far off is not continued.
+    each : callable
+        Applies a function to items: ``map``, or one with threads.
     """
-    starts = [evaluation.point for evaluation in _leading(evaluations, schedule[0].entering)]
-    if rows is None or rows.size == model.data.tests:
-        best, hopeless = _halved(model, starts, schedule, limit)
-    else:
-        part = model.on(model.data.subset(rows))
-        some, hopeless = _halved(part, [point.subset(rows) for point in starts], schedule, limit)
-        best = _on_all_tests(model, some, rows, starts)
-    done = best.converged or hopeless or (waits and far_off(best))
-    return best if done else minimise(model, best.evaluation)
-
-
-def _halved(
-    model: Model, starts: Sequence[Point], schedule: Sequence[Round], limit: float
-) -> tuple[Fit, bool]:
-    """The best fit after some rounds, and whether its chi-squared is larger than the limit."""
-    evaluations = model.evaluate_all(starts)
+    evaluations = model.evaluate_all([each.point for each in _leading(evaluations, schedule[0].entering)])
     for entering, iterations in schedule:
-        fits = [minimise(model, evaluation, iterations) for evaluation in _leading(evaluations, entering)]
+        fits = list(each(partial(minimise, model, iterations=iterations), _leading(evaluations, entering)))
         evaluations = [fit.evaluation for fit in fits]
         best = min(fits, key=_chi2)
         if best.chi2 > limit:
-            return best, True
-    return best, False
-
-
-def _on_all_tests(model: Model, fit: Fit, rows: np.ndarray, starts: Sequence[Point]) -> Fit:
-    """A fit to some tests as the start of one to all; other tests have the nuisances of the best start."""
-    points = [replace(point, x=fit.x) for point in starts]
-    nuisance = model.best_nuisances(points)
-    nuisance[rows] = fit.point.nuisance
-    return unfitted(model, model.evaluate(replace(points[0], nuisance=nuisance)))
+            return best
+    return best if best.converged else minimise(model, best.evaluation)
 
 
 def _chi2(each: Fit | Evaluation) -> float:

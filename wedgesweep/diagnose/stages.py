@@ -19,9 +19,6 @@ from wedgesweep.diagnose.search import (
     Search,
     base_fit,
     contenders,
-    followed,
-    from_shared_nuisances,
-    from_special_cases,
     refit_base,
     refit_best,
     single_fits,
@@ -129,15 +126,8 @@ def _pair_leads(known: Explained) -> bool:
     return bool(known.explanations) and len(known.explanations[0].effects) > 1
 
 
-def _shared_and_inadequate(known: Explained) -> bool:
-    return known.search.data.shares_nuisances and verdict.none_adequate(known.explanations)
-
-
 REFINEMENT = (
-    Stage("fits continued", _found(followed), _shared_and_inadequate),
     Stage("base model again", _base_model_again),
-    Stage("special cases", _found(from_special_cases)),
-    Stage("starts shared", _found(from_shared_nuisances)),
     Stage("covariance renewed", _with_renewed_covariance),
 )
 PAIRS = (
@@ -145,8 +135,6 @@ PAIRS = (
     Stage("beyond range", _beyond_range, _inadequate),
     Stage("best pairs", _explanations(_pairs), _for_pairs),
     Stage("components", _found(components), _pair_leads),
-    Stage("best refitted again", _found(refit_best), _shared_and_inadequate),
-    Stage("starts shared again", _found(from_shared_nuisances)),
     Stage("base model at last", refit_base),
     Stage("covariance renewed again", _with_renewed_covariance),
 )

@@ -51,8 +51,6 @@ BODY_STARTS = START * len(BODIES)
 OFFSETS, FEW = (-0.1, -0.05, -0.02, 0.02, 0.05, 0.1), 3
 # Samples that are simulated at a time, at most: they take some hundred megabytes.
 MOST_TOGETHER = 4_000_000
-# A search begins with at least FEWEST_WINDOWS windows, one of at most MOST_REPRESENTED successive ones.
-FEWEST_WINDOWS, MOST_REPRESENTED = 8, 3
 # Gain of a recorded input, as its logarithm.
 GAIN = NuisanceParameter(step=1e-3, max_step=0.1)
 
@@ -278,16 +276,6 @@ class TransientData(SampledData):
         tried = [points, *moved]
         by_try = [model.evaluate_all(each) for each in tried]
         return [best_of_each_test(evaluations) for evaluations in zip(*by_try, strict=True)]
-
-    def representative(self, evaluation: Evaluation) -> np.ndarray:
-        """Of each few successive windows of a record the one that fits worst, if there are many."""
-        numbers, misfit = self.numbers, evaluation.chi2_by_test
-        size = min(self.tests // FEWEST_WINDOWS, MOST_REPRESENTED)
-        if size < 2:
-            return np.arange(self.tests)
-        records = [np.flatnonzero(numbers == number) for number in np.unique(numbers)]
-        groups = [part for rows in records for part in np.array_split(rows, -(-rows.size // size))]
-        return np.array([rows[np.argmax(misfit[rows])] for rows in groups])
 
     def other_nuisances(self, model: Model, evaluation: Evaluation) -> np.ndarray | None:
         found, stated = evaluation.point.nuisance.copy(), self.start()[0]
