@@ -22,9 +22,9 @@ from wedgesweep.figures.diagnosis import (
 )
 from wedgesweep.figures.diagnosis.selection import motion
 
-# Figures of steady tests; tests/diagnose draws loops.
+# Figures of steady tests without a load; tests/diagnose draws loops and loads.
 OF_TRANSIENTS = ("decays", "spectrogram")
-KINDS = sorted(set(diagnosis.DESCRIPTIONS) - {"loops", *OF_TRANSIENTS})
+KINDS = sorted(set(diagnosis.DESCRIPTIONS) - {"loops", "column-load", *OF_TRANSIENTS})
 BY_TEST = ("harmonics", "leftover-force", "phase-plane", "waveforms")
 
 

@@ -21,6 +21,8 @@ COLUMN_ANGLE_DEG = 4.0
 SAME_NOISE = 12
 # How well a recorded input is known.
 RECORDED_SPREAD = 0.001
+# How well an amplitude is known beside a recorded load.
+LOADED_SPREAD = 0.001
 
 
 def draw_bench(one: DataSet, random: np.random.Generator, attempt: int) -> Draft | None:
@@ -47,6 +49,14 @@ def _draw_bench(one: DataSet, random: np.random.Generator, attempt: int) -> Draf
 def _noise(one: DataSet, attempt: int) -> str:
     """Every effect comes with every kind of noise in which it can show."""
     return NOISES[(one.index + one.index // len(ranges.EFFECTS) + attempt // SAME_NOISE) % len(NOISES)]
+
+
+def _draw_loaded(one: DataSet, random: np.random.Generator, attempt: int) -> Draft | None:
+    """Draw four tests without sticking, in which the normal force is determined; laws take turns."""
+    law = LAW_NAMES[one.index // 2 % len(LAW_NAMES)]
+    rig = rigs.bench(COLUMN_ANGLE_DEG)
+    tests = plan.draw(law, rig, plan.FOUR, random)
+    return None if tests is None else Draft(law, rig, _noise(one, attempt), tests, LOADED_SPREAD, {})
 
 
 def _draw_imperfect(one: DataSet, random: np.random.Generator, attempt: int) -> Draft | None:
@@ -99,4 +109,5 @@ BENCHES: dict[str, Callable[[DataSet, np.random.Generator, int], Draft | None]] 
     "random-rig": _draw_any_rig,
     "oscillator": _draw_oscillator,
     "constant": _draw_constant,
+    "load": _draw_loaded,
 }

@@ -19,6 +19,7 @@ class Draft:
 
     ``record_input``: what is recorded of the input, None if its amplitude is stated. ``errors``: how the
     true rig differs from that of the model; their ``size`` is relative to those of a good laboratory.
+    ``load_zero_std`` (N): of the load cell of the column, None if there is none.
     """
 
     law: str
@@ -35,6 +36,7 @@ class Draft:
     model_error: float = 0.0
     size: float = 0.0
     errors: Errors | None = None
+    load_zero_std: float | None = None
 
     @property
     def column_angle_deg(self) -> float | None:

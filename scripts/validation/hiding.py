@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from validation import ranges, rigs, strength, unmodelled
+from validation import plan, ranges, rigs, strength, unmodelled
 from validation.benches import SAME_NOISE, draw_bench
 from validation.draft import Draft
 from validation.sets import DataSet
@@ -69,6 +69,13 @@ def _hide_next(one: DataSet, draft: Draft, random: np.random.Generator, attempt:
     """One effect; the sets of a kind take turns through all effects."""
     effect = ranges.EFFECTS[(one.index + attempt // SAME_EFFECT) % len(ranges.EFFECTS)]
     return _hide_single(draft, effect, one.draw_target(random), random)
+
+
+def _hide_load_or_friction(one: DataSet, draft: Draft, random: np.random.Generator, attempt: int) -> bool:
+    """More or less preload and friction in turn; the mass must not stick, or no load is determined."""
+    effect = ("preload", "friction_level")[one.index % 2]
+    shown = _hide_single(draft, effect, one.draw_target(random), random)
+    return shown and (draft.law != "coulomb" or plan.slips(draft.true_system, draft.tests))
 
 
 def _hide_possible(one: DataSet, draft: Draft, random: np.random.Generator, attempt: int) -> bool:
@@ -150,6 +157,7 @@ HIDE: dict[str, Callable[[DataSet, Draft, np.random.Generator, int], bool]] = {
     "random-rig": _hide_possible,
     "oscillator": _hide_possible,
     "constant": _hide_possible,
+    "load": _hide_load_or_friction,
 }
 
 

@@ -55,6 +55,12 @@ def exact_or_tied(record: Record) -> bool:
     return exact(record) or (record["verdict"] == "tied" and reported(record))
 
 
+def tells_load_from_friction(record: Record) -> bool:
+    """Whether of preload and friction level the right one is reported and the other one is not."""
+    listed = [causes(record), *(sorted(rival["effects"]) for rival in record["rivals"])]
+    return [each for each in (["preload"], ["friction_level"]) if each in listed] == [record["truth"]]
+
+
 def leads_ladder(record: Record) -> bool:
     """Whether the truth is the most accurate single effect, or part of the most accurate pair."""
     levels = [level["effects"] for level in record["ladder"]]

@@ -14,6 +14,8 @@ from wedgesweep.natural_units import Dimension
 # Frequencies (Hz, of a rig with the bench's natural frequency) and the number of amplitudes at each.
 TWELVE = ((5.0, 2), (8.0, 2), (11.0, 1), (20.0, 2), (24.0, 2), (28.0, 1), (32.0, 2))
 PAPER = ((20.0, 1), (30.0, 1))
+# Above resonance, where motion alone does not tell more load of the wedges from more friction.
+FOUR = ((20.0, 1), (24.0, 1), (28.0, 1), (32.0, 1))
 # Every data set of twelve tests shifts the frequencies by up to this share.
 SHIFT = 0.05
 # Limits of the base model's response: smallest normal force (N, on the bench) and share of time stuck.
@@ -45,6 +47,11 @@ def suits(system: System, tests: list[Test]) -> bool:
     force, stuck = _force_and_sticking(system, tests)
     valid = (force > 0.0) | (lift_off.NAME in system.effects)
     return bool((valid & (stuck < 0.95)).all())
+
+
+def slips(system: System, tests: list[Test]) -> bool:
+    """Whether a system never sticks in any test."""
+    return bool((_force_and_sticking(system, tests)[1] == 0.0).all())
 
 
 def _force_and_sticking(system: System, tests: list[Test]) -> tuple[np.ndarray, np.ndarray]:

@@ -34,6 +34,8 @@ WORSENED = 1000
 DATA, RESULT = "data", "diagnosis"
 # Relative std with which the amplitude of a recommended test is known.
 ADDED_SPREAD = 0.01
+# Std (N) of the zero of a load cell: half a per cent of the load of the column.
+LOAD_ZERO_STD = 0.005
 # Periods after which a response counts as steady; close to breakaway it takes long.
 SETTLE_PERIODS = 400
 # Where the bolster sticks, or moves without getting steady, the input is raised by this factor, at most so
@@ -98,6 +100,7 @@ def _run(one: DataSet, out: Path) -> Record:
         return _run_time_records(one, out / one.name)
     directory, clock = out / one.name, _Clock()
     draft = draw(one.original)
+    draft.load_zero_std = LOAD_ZERO_STD if one.kind == "load" else None
     spreads = [draft.spread] * len(draft.tests)
     if one.kind == "added":
         original = record_of(one.original, out)
@@ -207,6 +210,8 @@ def _synthesize(draft: Draft, spreads: list[float | None], seed: int, directory:
     options = ["--noise", draft.noise, "--level", LEVEL, "--seed", seed, "--n-jobs", 1]
     if TONE not in draft.hidden:  # with a tone nothing is ever steady, and all these periods would be run
         options += ["--settle-periods", SETTLE_PERIODS]
+    if draft.load_zero_std is not None:
+        options += ["--normal-force", draft.load_zero_std]
     if draft.record_input:
         options += ["--record-input", draft.record_input]
     # The errors of an imperfect bench are in its rig.

@@ -17,11 +17,11 @@ class Kind(NamedTuple):
     excess: tuple[float, float] | None = None
 
 
-STRONG = (1000.0, 30_000.0)
+STRONG, WEAK = (1000.0, 30_000.0), (150.0, 700.0)
 ALL = {
     "clean": Kind(60),  # nothing is hidden
     "strong": Kind(84, STRONG),  # one effect
-    "weak": Kind(42, (150.0, 700.0)),  # one effect
+    "weak": Kind(42, WEAK),  # one effect
     "pair": Kind(30, (1100.0, 30_000.0)),  # two effects of different families
     "unknown": Kind(30, STRONG),  # an effect that is not among the candidates
     "poor": Kind(20, (150.0, 5000.0)),  # one effect, in the paper's two tests of unknown amplitude
@@ -36,8 +36,11 @@ ALL = {
     "worse": Kind(180),  # any of these three, made worse as recorders do; see worse.py
     "damper": Kind(40),  # one effect of a damper, or none, in its loops; see time_records.py
     "constant": Kind(12, STRONG),  # one effect on a bench with constant damping
+    "load": Kind(10, WEAK),  # more preload or friction, in four tests that record the load of the column
+    "no-load": Kind(10, WEAK),  # the same without that channel
 }
 KINDS = tuple(ALL)
+SHARED = {"added": "poor", "no-load": "load"}
 
 
 @dataclass(frozen=True)
@@ -55,8 +58,8 @@ class DataSet:
 
     @property
     def original(self) -> "DataSet":
-        """The poor set that an ``added`` set extends; every other set itself."""
-        return replace(self, kind="poor") if self.kind == "added" else self
+        """The set whose draw an ``added`` or a ``no-load`` set shares; every other set itself."""
+        return replace(self, kind=SHARED.get(self.kind, self.kind))
 
     def random(self, attempt: int = 0) -> np.random.Generator:
         """A generator of its own, so that a campaign of another size draws the same sets."""

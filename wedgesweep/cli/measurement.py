@@ -10,6 +10,7 @@ from wedgesweep import rotation
 from wedgesweep.cli.messages import log
 
 if TYPE_CHECKING:
+    from wedgesweep.diagnose.steady.column_load import ColumnLoad
     from wedgesweep.diagnose.steady.spectra import Spectrum
     from wedgesweep.diagnose.transient.window import RecordWindow
     from wedgesweep.measured import Measurement, TestRecord
@@ -160,7 +161,7 @@ def _warn_of_noise(test: "TestRecord", name: str, share: float, mend: str) -> No
 
 def _steady_rows(measurement: "Measurement", size: float) -> list[tuple[str, ...]]:
     """What is compared of each steady test; input amplitudes are in a unit of some size."""
-    from wedgesweep.diagnose.steady.from_measurement import compared, recorded_spectra
+    from wedgesweep.diagnose.steady.from_measurement import column_load_of, compared, recorded_spectra
 
     names, spectra = compared(measurement), recorded_spectra(measurement)
     for test, own in zip(measurement.tests, spectra, strict=True):
@@ -173,7 +174,7 @@ def _steady_rows(measurement: "Measurement", size: float) -> list[tuple[str, ...
             _amplitude(test, size),
             f"{test.duration * own.frequency:.2f}",
             f"{test.sampling_rate / own.frequency:.4g}",
-            _noise(names, own),
+            ", ".join(filter(None, (_noise(names, own), _load_noise(column_load_of(test))))),
             _runs(own.seen),
         )
         for test, own in zip(measurement.tests, spectra, strict=True)
@@ -205,6 +206,11 @@ def _noise(names: "Sequence[str]", spectrum: "Spectrum") -> str:
     both = zip(names, spectrum.sample_noise, spectrum.rms, strict=False)
     levels = [(std, std / rms, *DISPLAY_UNITS[name]) for name, std, rms in both]
     return ", ".join(f"{std / size:.3g} {unit} ({100.0 * share:.2g} %)" for std, share, size, unit in levels)
+
+
+def _load_noise(load: "ColumnLoad | None") -> str:
+    """Noise of the load of a column, and as a share of its mean."""
+    return f"{load.noise:.3g} N ({100.0 * load.noise / load.mean[-1].real:.2g} %)" if load else ""
 
 
 def _runs(orders: tuple[int, ...]) -> str:

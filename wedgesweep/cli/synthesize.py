@@ -78,6 +78,12 @@ SHARE = FiniteRange(min=0.0, max=1.0, max_open=True)
     show_default=True,
     help="Std of the recorded input's noise relative to its rms.",
 )
+@click.option(
+    "--normal-force",
+    type=FiniteRange(min=0.0),
+    metavar="ZERO_STD",
+    help="Record the normal force of one wedge on its column in steady tests; std of its zero, in N.",
+)
 @N_JOBS
 def synthesize(
     config_path: Path, plan_path: Path, output: Path | None, n_jobs: int | None, **options: Any

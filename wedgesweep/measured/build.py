@@ -13,6 +13,7 @@ from wedgesweep.measured.declarations import (
     INPUT,
     KNOWN_FORCE,
     LOOP,
+    NORMAL_FORCE,
     STEADY,
     TRANSIENT,
 )
@@ -86,6 +87,7 @@ def build_record(
         cutoff=given.get("lowpass_hz"),
         recorded_s=recorded if used < recorded else None,
         repeat_of=given.get("repeat_of"),
+        normal_force=columns.get(NORMAL_FORCE),
         remarks=tuple(filter(None, (*remarks, *even.remarks, thinned))),
     )
     problems.extend(FAULTS[test.kind](test, file, at))

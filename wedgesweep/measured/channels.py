@@ -16,6 +16,7 @@ from wedgesweep.measured.declarations import (
     INPUT_HARMONICS_STD,
     KNOWN_FORCE,
     LOOP,
+    NORMAL_FORCE,
     RELATIVE,
     RESPONSES,
     STEADY,
@@ -27,7 +28,7 @@ from wedgesweep.units import angular
 
 # Responses that are compared at a time.
 MOST_RESPONSES = 2
-STRAY = "stray_vibration"
+STRAY, OSCILLATOR = "stray_vibration", "oscillator"
 FORCE = "force"
 
 
@@ -96,6 +97,8 @@ def channel_faults(
     responses = [name for name in RESPONSES if name in columns]
     if INPUT not in columns:
         return _with_stated_amplitude(columns, gain_std)
+    if NORMAL_FORCE in columns:
+        return [f"{NORMAL_FORCE}: it is not compared beside a recorded input; leave one of them out"]
     if not responses:
         named = ", ".join(name for name in RESPONSES if name != "force")
         return [f"{INPUT}: there is no response; give at least one of {named}"]
@@ -172,6 +175,10 @@ def model_faults(
 ) -> list[str]:
     """Faults of the base model beside the channels and kinds of the tests."""
     faults, effects = _unit_faults(model, columns), model.effects
+    if NORMAL_FORCE in columns and model.system == OSCILLATOR:
+        faults.append(f"measurement.columns.{NORMAL_FORCE}: an oscillator has no column; leave it out")
+    if NORMAL_FORCE in columns and STRAY in effects:
+        faults.append(f"effects.{STRAY}: beside a {NORMAL_FORCE} a response repeats each period; remove it")
     if model.opens and {*kinds} != {STEADY}:
         faults.append(f"joints that lift off are simulated in tests of kind {STEADY} only; let them hold")
     if INPUT not in columns:

@@ -20,6 +20,8 @@ RESPONSES = ("displacement", "velocity", "acceleration", "force")
 INPUT = "input"
 # A recorded force on the mass beside what drives it.
 KNOWN_FORCE = "known_force"
+# The load of a column.
+NORMAL_FORCE = "normal_force"
 QUANTITIES = ("displacement", "velocity", "acceleration", "force")
 RELATIVE, ABSOLUTE = "relative", "absolute"
 # Effects that scale a number of the model, which may be declared uncertain.
@@ -32,7 +34,7 @@ STEADY, TRANSIENT, LOOP = KINDS = ("steady", "transient", "loop")
 MIXED = "mixed"
 # Channels of each kind where several kinds share one declaration.
 CHANNELS = {
-    STEADY: ("time", "displacement", "velocity", "acceleration", INPUT, KNOWN_FORCE),
+    STEADY: ("time", "displacement", "velocity", "acceleration", INPUT, KNOWN_FORCE, NORMAL_FORCE),
     TRANSIENT: ("time", "displacement", "velocity", "acceleration", INPUT, KNOWN_FORCE),
     LOOP: ("time", "displacement", "force", KNOWN_FORCE),
 }
@@ -179,7 +181,7 @@ def columns_of(columns: Mapping[str, Any], kind: str, alone: bool) -> dict[str, 
 def units(channel: str, quantity: str | None = None) -> dict[str, float]:
     """Units of a channel, by name, and their sizes in SI; an input has those of its quantity."""
     if channel != INPUT:
-        return UNITS["force" if channel == KNOWN_FORCE else channel]
+        return UNITS["force" if channel in (KNOWN_FORCE, NORMAL_FORCE) else channel]
     if quantity is not None:
         return UNITS[quantity]
     return {name: size for each in QUANTITIES for name, size in UNITS[each].items()}
@@ -251,6 +253,9 @@ INPUT_HARMONICS_STD = Quantity(
     below=1.0,
 )
 INPUT_STDS = (INPUT_GAIN_STD.key, INPUT_HARMONICS_STD.key)
+ZERO_STD = Quantity(
+    "zero_std", nan, "std of the zero of the load cell from test to test, in this unit", minimum=0.0
+)
 DERIVED = Flag(key="derived", meaning="whether it is computed from the displacement", default=False)
 
 COLUMNS = table(
@@ -264,6 +269,14 @@ COLUMNS = table(
     _channel(INPUT, "input as recorded", "u", "mm", QUANTITY, optional=True),
     _channel(
         KNOWN_FORCE, "force on the mass beside force or input, as of a pressure", "p", "N", optional=True
+    ),
+    _channel(
+        NORMAL_FORCE,
+        "normal force of one wedge on its column",
+        "n",
+        "N",
+        Number.of(ZERO_STD, example=0.1),
+        optional=True,
     ),
     example="measurement.columns",
 )

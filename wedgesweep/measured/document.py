@@ -14,7 +14,18 @@ from wedgesweep.files import missing
 from wedgesweep.hints import shortened
 from wedgesweep.measured import channels, kinds
 from wedgesweep.measured.build import build_record
-from wedgesweep.measured.declarations import DELAY_STD, INPUT, INPUT_STDS, ROOT, STEADY, UNCERTAIN, columns_of
+from wedgesweep.measured.declarations import (
+    DELAY_STD,
+    INPUT,
+    INPUT_STDS,
+    NORMAL_FORCE,
+    ROOT,
+    STEADY,
+    UNCERTAIN,
+    ZERO_STD,
+    columns_of,
+    units,
+)
 from wedgesweep.measured.measurement import MeasuredError, Measurement, TestRecord
 from wedgesweep.measured.model import load_model, with_numbers
 from wedgesweep.measured.plausibility import amplitude_faults, noise_faults
@@ -201,4 +212,6 @@ def _test(
     if not signals:
         return []
     test = build_record(file.stem, given, signals, remarks, str(file), at, problems)
+    if test and (load := measurement["columns"].get(NORMAL_FORCE)):
+        test = replace(test, zero_std=load.get(ZERO_STD.key, 0.0) * units(NORMAL_FORCE)[load["unit"]])
     return [test] if test else []

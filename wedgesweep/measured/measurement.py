@@ -29,6 +29,7 @@ class TestRecord:
     samples at these times, and so are ``acceleration`` (m/s^2) and the recorded ``input`` (SI); None where
     not measured. ``model``: numbers of the base model in this test, by "section.key", in its units.
     ``kind``: of test; ``force`` (N) and ``cutoff`` (Hz, of a low-pass filter; None: chosen) are a loop's.
+    ``normal_force`` (N): of a column, whose zero has the standard deviation ``zero_std`` (N).
     ``recorded_s``: length (s) of the file's record, None if all of it is used. ``repeat_of``: file of the
     test that this one repeats.
     """
@@ -51,6 +52,8 @@ class TestRecord:
     cutoff: float | None = None
     recorded_s: float | None = None
     repeat_of: str | None = None
+    normal_force: np.ndarray | None = None
+    zero_std: float = 0.0
     remarks: tuple[str, ...] = ()
 
     @cached_property

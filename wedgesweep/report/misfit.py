@@ -19,6 +19,12 @@ NOISE = {
     "noise, displacement [mm]": "noise_displacement_mm",
     "noise, velocity [mm/s]": "noise_velocity_mm_per_s",
 }
+# The same of the load of a column, where that was recorded.
+LOAD = {
+    "noise, load [N]": "noise_normal_force_N",
+    "mean load [N]": "mean_normal_force_N",
+    "fitted mean load [N]": "mean_normal_force_fitted_N",
+}
 
 
 def section(result: DiagnosisResult, draw: InlineFigures, place: str = "misfit") -> Markup:
@@ -33,12 +39,17 @@ def section(result: DiagnosisResult, draw: InlineFigures, place: str = "misfit")
         html.element("h3", "Motion and forces, test by test"),
         html.paragraph(_selected(result)),
         *(draw(kind, tests=order[:TESTS_SHOWN]) for kind in BY_TEST),
+        *([draw("column-load")] if _has_load(result) else []),
         _rest(draw, order[TESTS_SHOWN:]),
         html.element("h3", "Plateaus, energy and peak-to-peak"),
         draw("plateaus", _plateaus(result)),
         draw("energy", _energy(result)),
         draw("swing"),
     )
+
+
+def _has_load(result: DiagnosisResult) -> bool:
+    return "measured_load" in result.data
 
 
 def heading(result: DiagnosisResult) -> str:
@@ -78,7 +89,7 @@ def _described(test: dict[str, Any]) -> str:
 def _table(result: DiagnosisResult) -> Markup:
     unit = phrases.amplitude_unit(result.document["misfit"]["tests"][0])
     size = phrases.split_key(f"amplitude_{unit}")[1]
-    noise = phrases.columns(NOISE, result.document)
+    noise = phrases.columns(NOISE, result.document) | (LOAD if _has_load(result) else {})
     head = ["test", "frequency [Hz]", f"amplitude [{size}]", f"fitted amplitude [{size}]", "periods"]
     head += [*noise, *(f"Q/dof {model}" for model in result.models)]
     rows = [_row(test, [*noise.values()], result.models) for test in result.document["misfit"]["tests"]]

@@ -66,7 +66,9 @@ class Periodic(NamedTuple):
     ``spectra`` (n, 2, H), complex: D_h, h = 1..H, of displacement x - y = -z and of its rate, as the sensors
     show them; ``warm``: where they were found. ``outcome`` (n,) is OK or one of event_driven.MESSAGES;
     ``periods`` run, ``extremes`` (n, 2) lowest and highest deflection (m), ``stuck`` share of time,
-    ``lifted`` share of time with a negative normal force (NaN if no forces were asked for).
+    ``lifted`` share of time with a negative normal force (NaN if no forces were asked for). ``load``
+    (n, samples): normal force of the first contact (N) over a period from phase 0, NaN where it is not
+    determined; (n, 0) if it was not asked for.
     """
 
     spectra: Any
@@ -76,6 +78,7 @@ class Periodic(NamedTuple):
     extremes: Any
     stuck: Any
     lifted: Any
+    load: Any
 
 
 class Accuracy(NamedTuple):
@@ -97,6 +100,7 @@ def respond(
     samples_per_period: int,
     harmonics: int,
     forces: bool = False,
+    load: bool = False,
 ) -> Periodic:
     """Steady responses of parameter records, shape (n,).
 
@@ -112,6 +116,8 @@ def respond(
         Samples from which the harmonics are taken, and how many.
     forces : bool
         Also determine ``lifted``; with effects that have their own mechanics this doubles the time.
+    load : bool
+        Also sample the normal force.
     """
     n = len(parameters)
     found = Periodic(
@@ -122,8 +128,9 @@ def respond(
         np.full((n, 2), np.nan),
         np.full(n, np.nan),
         np.full(n, np.nan),
+        np.full((n, samples_per_period if load else 0), np.nan),
     )
-    room = memory(accuracy.rtol, samples_per_period, energies=forces, forces=False)
+    room = memory(accuracy.rtol, samples_per_period, energies=forces, forces=load)
     motion = np.full((n, 2, samples_per_period), np.nan)
     for rows, cases in grouped(parameters):
         _respond_all(prepared(cases), rows, accuracy, room, found, motion)
@@ -165,6 +172,8 @@ def _reduce(i, periods, room, found, motion):
     n = periods * room.samples_per_period
     response.mean_period(room.x[:n], -1.0, motion[0])
     response.mean_period(room.velocity[:n], -1.0, motion[1])
+    if found.load.shape[1] > 0:
+        response.mean_period(room.normal[0, :n], 1.0, found.load[i])
     one = room.sums[0]
     found.extremes[i, 0], found.extremes[i, 1] = one.lowest, one.highest
     found.stuck[i] = one.stuck_time / one.time

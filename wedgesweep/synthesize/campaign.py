@@ -53,6 +53,8 @@ def synthesize(
     problems: list[str] = []
     _, law = with_law(config, source, problems)
     problems += _unit_faults(config, source, plan, options.record_input)
+    if options.normal_force is not None and (config.system == "oscillator" or options.record_input):
+        problems.append("--normal-force: only a wedge has a column, and it is recorded beside stated inputs")
     if problems:
         raise SynthesisError(problems)
     options = _with_recorded_input(config, plan, options)
@@ -150,6 +152,7 @@ def _motions(truth: Truth, options: Options, n_jobs: int, source: str) -> list[M
             options.settle_periods,
             STRAY not in truth.config.effects,
             truth.effects,
+            options.normal_force is not None,
         )
         for test in truth.tests
     )
@@ -169,7 +172,7 @@ def _motion(record: np.ndarray, *arguments: Any) -> Motion | str:
     """Return the motion of a test, or why there is none."""
     try:
         return steady(record, *arguments)
-    except CaseError as error:
+    except (CaseError, NoMotion) as error:
         return str(error)
 
 
@@ -190,7 +193,18 @@ def _table(truth: Truth, test: TrueTest, motion: Motion, options: Options) -> Ta
     step = 1.0 / test.sampling_hz
     displacement, velocity = noise.NOISES[options.noise](channels, options.level, step, test.random)
     time = step * np.arange(displacement.size)
-    return Table(time, displacement * 1e3, velocity * 1e3, _input(truth, test, time, options))
+    given = _input(truth, test, time, options)
+    return Table(time, displacement * 1e3, velocity * 1e3, given, load=_load(motion, test, options))
+
+
+def _load(motion: Motion, test: TrueTest, options: Options) -> np.ndarray | None:
+    """The recorded load of the column (N), with white noise and an error of its zero."""
+    if motion.load is None or options.normal_force is None:
+        return None
+    zero = options.normal_force * test.random.normal()
+    # Differences lose a sample at either end.
+    load = motion.load[1:-1] if options.noise == "differentiated" else motion.load
+    return load + zero + options.level * load.std() * test.random.normal(size=load.size)
 
 
 def _input(truth: Truth, test: TrueTest, time: np.ndarray, options: Options) -> np.ndarray | None:

@@ -25,7 +25,7 @@ from wedgesweep.units import UNITS
 class Table:
     """Content of a CSV file: time in s, displacement in mm, velocity in mm/s, shape (n,) each.
 
-    ``input``: as recorded, in its SI unit; ``force`` (N); None where not measured.
+    ``input``: as recorded, in its SI unit; ``force`` and ``load`` (N); None where not measured.
     """
 
     time: np.ndarray
@@ -33,6 +33,7 @@ class Table:
     velocity: np.ndarray | None
     input: np.ndarray | None = None
     force: np.ndarray | None = None
+    load: np.ndarray | None = None
 
 
 def require_free(directory: Path) -> None:
@@ -63,6 +64,7 @@ def _write_csv(path: Path, table: Table) -> None:
         "v": table.velocity,
         "u": table.input,
         "F": table.force,
+        "n": table.load,
     }
     columns = {name: each for name, each in named.items() if each is not None}
     formats = ["%.7f", *["%.7g"] * (len(columns) - 1)]
@@ -95,6 +97,8 @@ def measured(title: str, config: Config, plan: Plan, options: Options) -> dict[s
         columns["velocity"] = velocity
     if LOOP in kinds:
         columns["force"] = {"column": "F", "unit": "N"}
+    if options.normal_force is not None:
+        columns["normal_force"] = {"column": "n", "unit": "N", "zero_std": options.normal_force}
     if options.record_input is not None and any(t.driven or t.kind == STEADY for t in plan.tests):
         unit = next(iter(UNITS[options.record_input]))
         columns["input"] = {"column": "u", "unit": unit, "quantity": options.record_input}

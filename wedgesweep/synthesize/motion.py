@@ -26,6 +26,9 @@ SOON = 40
 # The lag of the velocity channel is integrated in such steps, starting this many time constants before.
 LAG_STEPS_PER_PERIOD = 4000
 LAG_MEMORY = 25.0
+# Samples of the load per period, of which the harmonics that pass the filter are taken: it jumps where slip
+# turns.
+LOAD_SAMPLES = 2**14
 
 
 class NoMotion(Exception):
@@ -43,11 +46,16 @@ class Clock:
 
 @dataclass(frozen=True, eq=False)
 class Motion:
-    """Displacement x - y (m, less that of the rest) and its rate (m/s), shape (n,)."""
+    """Displacement x - y (m, less that of the rest) and its rate (m/s), shape (n,).
+
+    ``load`` (n,): normal force of the column (N), low-passed as a load cell's amplifier does it; None if it
+    was not asked for.
+    """
 
     displacement: np.ndarray
     velocity: np.ndarray
     settle_periods: int
+    load: np.ndarray | None = None
 
 
 def steady(
@@ -56,6 +64,7 @@ def steady(
     settle_periods: int,
     repeats: bool,
     effects: Mapping[str, Mapping[str, float]],
+    load: bool = False,
 ) -> Motion:
     """Simulate a test until it is steady, and sample it as the sensors do.
 
@@ -71,11 +80,15 @@ def steady(
         Whether the motion can be periodic; otherwise all settling periods are run.
     effects : mapping
         Effects of the config in SI units; velocity_lag and displacement_gain are applied here.
+    load : bool
+        Whether the load of the column is recorded.
 
     Raises
     ------
     CaseError
         If the wedge locks or the solver fails.
+    NoMotion
+        If the load is wanted and not determined.
     """
     period = 2.0 * pi / float(record["input"]["omega"][0])
     lag = effects.get("velocity_lag", {}).get("time", 0.0)
@@ -85,16 +98,34 @@ def steady(
     # Shifted by whole periods, so that the window also covers the times before the first sample.
     shift = period * ceil(ahead * fine / period)
     offsets = shift + clock.start + fine * np.arange(-ahead, (clock.count - 1) * finer + 1)
-    x, velocity, settled = _sampled(record, offsets, settle_periods, repeats)
+    x, velocity, _, settled = _sampled(record, offsets, settle_periods, repeats)
     seen = lagged(-velocity, fine, lag) if lag > 0.0 else -velocity
     gain = effects.get("displacement_gain", {}).get("scale", 1.0)
-    return Motion(-gain * x[ahead::finer], seen[ahead::finer], settled)
+    found = _load(record, clock, settle_periods) if load else None
+    return Motion(-gain * x[ahead::finer], seen[ahead::finer], settled, found)
+
+
+def _load(record: np.ndarray, clock: Clock, settle_periods: int) -> np.ndarray:
+    """Normal force (N) of the column at the times of a clock (n,), low-passed at half the sampling rate."""
+    period = 2.0 * pi / float(record["input"]["omega"][0])
+    _, _, force, _ = _sampled(record, period / LOAD_SAMPLES * np.arange(LOAD_SAMPLES), settle_periods, True)
+    if np.isnan(force).any():
+        message = (
+            "friction holds the bolster at times, and no normal force is determined; raise the amplitude"
+        )
+        raise NoMotion(message)
+    passed = int(0.5 * period / clock.step)
+    harmonics = np.fft.rfft(force)[: passed + 1] * (2.0 / LOAD_SAMPLES)
+    phase = (
+        2.0 * pi * np.outer(np.arange(passed + 1), clock.start + clock.step * np.arange(clock.count)) / period
+    )
+    return (harmonics @ np.exp(1j * phase)).real - 0.5 * harmonics[0].real
 
 
 def _sampled(
     record: np.ndarray, offsets: np.ndarray, settle_periods: int, repeats: bool
-) -> tuple[np.ndarray, np.ndarray, int]:
-    """Deflection (m) and its rate at times (s) after settling, and how many periods that took."""
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, int]:
+    """Deflection (m), its rate and normal force (N) at times (s) after settling, and periods that it took."""
     omega = float(record["input"]["omega"][0])
     period = 2.0 * pi / omega
     soon = min(settle_periods, SOON)
@@ -107,10 +138,10 @@ def _sampled(
         settled = round((found.t[0] - places[order[0]]) / period)
         if settled < soon:
             back = np.argsort(order)
-            return found.x[back], found.velocity[back], settled
+            return found.x[back], found.velocity[back], found.normal[0][back], settled
     window = TimedWindow(omega, settle_periods, ceil(offsets[-1] / period) + 1, 0, offsets)
     found = radau.solve(record, window, RTOL, TIME_LIMIT, settled=SETTLED if repeats else None).samples
-    return found.x, found.velocity, round((found.t[0] - offsets[0]) / period)
+    return found.x, found.velocity, found.normal[0], round((found.t[0] - offsets[0]) / period)
 
 
 def _steady_state(record: np.ndarray) -> Sequence[float]:

@@ -12,6 +12,8 @@ QUANTITIES = ("displacement", "velocity", "acceleration", FORCE)
 class Options:
     """How the data are made; ``level``, ``input_level`` and ``amplitude_error`` are relative std.
 
+    ``normal_force``: std (N) of the zero of the load cell that records the load of a column in steady tests;
+    None if there is none.
     ``record_input``: quantity of the input that is recorded; its amplitude is then not stated.
 
     If ``sampling_hz`` is None, each test has a different rate, which does not divide the period: near 2 kHz
@@ -27,3 +29,4 @@ class Options:
     amplitude_error: float = 1e-3
     record_input: str | None = None
     input_level: float = 0.01
+    normal_force: float | None = None

@@ -12,6 +12,7 @@ from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.next_test.designs import Design
 from wedgesweep.diagnose.next_test.sensors import Sensors
 from wedgesweep.diagnose.steady import simulation
+from wedgesweep.diagnose.steady.column_load import CHANNEL
 from wedgesweep.diagnose.steady.harmonic_data import HarmonicData
 from wedgesweep.diagnose.steady.spectra import Spectrum
 from wedgesweep.diagnose.steady.tone import TONE
@@ -63,7 +64,9 @@ def sines(best: Fit, known: Sensors, measured: HarmonicData | None) -> Design:
     acceleration = own.units.ratio(ACCELERATION) * acceleration
     omega = 2.0 * pi * frequency
     amplitude = own.units.mass * acceleration if model.forced else acceleration / omega**2
-    shape = (len(known.spectra), HARMONICS) if measured is None else measured.shape
+    shape = (len(known.spectra), HARMONICS)
+    if measured is not None:
+        shape = min(measured.shape[0], CHANNEL), measured.shape[1]
     nothing = np.zeros(shape)
     empty = [
         Spectrum(float(f), PERIODS, 0, 0.0, nothing + 0.0j, nothing + 1.0, 0.0j, nothing[:, :0], ())

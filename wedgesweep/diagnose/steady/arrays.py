@@ -7,6 +7,7 @@ import numpy as np
 from wedgesweep.diagnose.fit_data import BY_MODEL, BY_TEST, Arrays, Variables
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.steady import waveforms
+from wedgesweep.diagnose.steady.column_load import CHANNEL
 
 if TYPE_CHECKING:
     from wedgesweep.diagnose.steady.harmonic_data import HarmonicData
@@ -19,7 +20,7 @@ def arrays(data: "HarmonicData", base: Fit, extended: Fit) -> Arrays:
     """Arrays of steady tests with both models; harmonics are from phase 0 of the input."""
     fits = base, extended
     measured = waveforms.measured_from_phase_zero(data, extended)
-    simulated = np.array([fit.evaluation.response.harmonics for fit in fits])[..., : data.shape[1]]
+    simulated = np.array([fit.evaluation.response.harmonics for fit in fits])[:, :, :CHANNEL, : data.shape[1]]
     variables = {
         **_spectra(data, measured, simulated),
         **_waveforms(data, measured, simulated),
@@ -27,6 +28,7 @@ def arrays(data: "HarmonicData", base: Fit, extended: Fit) -> Arrays:
         **_energies(data, fits, measured),
         **_dwells(data, measured, simulated),
         **_forces(data, base),
+        **_loads(data, fits),
     }
     coordinates = {
         "channel": list(CHANNELS[: data.shape[0]]),
@@ -39,7 +41,7 @@ def arrays(data: "HarmonicData", base: Fit, extended: Fit) -> Arrays:
 
 def _sample_noise(data: "HarmonicData") -> np.ndarray:
     """Noise (T, C) of a sample, NaN where a test does not have the channel."""
-    found = np.full((data.tests, data.shape[0]), np.nan)
+    found = np.full((data.tests, min(data.shape[0], CHANNEL)), np.nan)
     for row, spectrum in zip(found, data.spectra, strict=True):
         row[: spectrum.sample_noise.size] = spectrum.sample_noise
     return found
@@ -51,7 +53,7 @@ def _where_measured(data: "HarmonicData", values: np.ndarray) -> np.ndarray:
 
 
 def _spectra(data: "HarmonicData", measured: np.ndarray, simulated: np.ndarray) -> Variables:
-    weight = data.weight[..., : data.shape[1]]
+    weight = data.weight[:, :CHANNEL, : data.shape[1]]
     noise = np.divide(1.0, weight, out=np.full_like(weight, np.nan), where=weight > 0.0)
     seen, meaning = _parts(_where_measured(data, measured)), "noise of a real part of a harmonic"
     return {
@@ -111,6 +113,31 @@ def _forces(data: "HarmonicData", base: Fit) -> Variables:
     body = "mass" if data.model.system == "oscillator" else "bolster"
     meaning = f"force on the {body} that the base model lacks"
     return {"leftover_force": (("test", "phase"), force, "N", meaning)}
+
+
+def _loads(data: "HarmonicData", fits: tuple[Fit, Fit]) -> Variables:
+    """The load of the column over a period; NaN where it is not compared."""
+    if not data.loads:
+        return {}
+    phase = fits[1].evaluation.response.phase
+    seen = _load_waveform(data.rotated(data.measured, -phase))
+    found = [_load_waveform(fit.evaluation.response.harmonics) for fit in fits]
+    there = np.array([each is not None for each in data.loads])[:, None]
+    return {
+        "measured_load": (
+            ("test", "phase"),
+            np.where(there, seen, np.nan),
+            "N",
+            "measured load of the column",
+        ),
+        "simulated_load": ((*BY_MODEL, "phase"), np.where(there, found, np.nan), "N", "simulated load"),
+    }
+
+
+def _load_waveform(harmonics: np.ndarray) -> np.ndarray:
+    """Load (..., T, PHASES) of harmonics (..., T, C, H), its mean last."""
+    load = harmonics[..., CHANNEL, :]
+    return waveforms.waveform(load[..., :-1]) + load[..., -1:].real
 
 
 def _parts(values: np.ndarray) -> np.ndarray:

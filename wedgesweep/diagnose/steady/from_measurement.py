@@ -6,7 +6,8 @@ import numpy as np
 
 from wedgesweep.diagnose.channel_factors import channel_factors
 from wedgesweep.diagnose.fit_data import INPUT_GAIN
-from wedgesweep.diagnose.steady import tone
+from wedgesweep.diagnose.steady import column_load, simulation, tone
+from wedgesweep.diagnose.steady.column_load import ColumnLoad
 from wedgesweep.diagnose.steady.harmonic_data import HarmonicData, stated
 from wedgesweep.diagnose.steady.recorded_input import (
     InputHarmonics,
@@ -19,6 +20,7 @@ from wedgesweep.diagnose.steady.spectra import Spectrum, fitted, noise_coherence
 from wedgesweep.effects import acting
 from wedgesweep.effects.channel_delay import NAME as DELAY
 from wedgesweep.measured import Measurement, TestRecord
+from wedgesweep.measured.declarations import NORMAL_FORCE
 from wedgesweep.natural_units import FREQUENCY
 
 # Effects that only a sensor of this channel can show, of the motion that is simulated.
@@ -46,7 +48,24 @@ def harmonic_data(measurement: Measurement) -> HarmonicData:
         model_error=measurement.model_error,
         harmonics_std=measurement.input_harmonics_std,
     )
+    data = replace(data, loads=_loads(measurement, data))
     return data.with_covariance(stated(data))
+
+
+def column_load_of(test: TestRecord) -> ColumnLoad | None:
+    """The load of the column in a test, None if it was not recorded."""
+    if test.normal_force is None:
+        return None
+    return column_load.measured(test.time, test.normal_force, test.refined_frequency, test.zero_std)
+
+
+def _loads(measurement: Measurement, data: HarmonicData) -> tuple[ColumnLoad | None, ...]:
+    """Loads of the column of all tests; none where the base model sticks, which leaves them undetermined."""
+    loads = [column_load_of(test) for test in measurement.tests]
+    if not any(loads):
+        return ()
+    sticks = simulation.sticks(data.records(stated(data)))
+    return tuple(None if stuck else load for load, stuck in zip(loads, sticks, strict=True))
 
 
 def recorded_spectra(measurement: Measurement) -> tuple[Spectrum, ...]:
@@ -67,14 +86,15 @@ def compared(measurement: Measurement) -> list[str]:
 
 
 def _with_tone(measurement: Measurement) -> tuple[tone.Tone | None, tuple[Spectrum, ...]]:
-    """The spurious tone under stated inputs, and the spectra of all tests."""
+    """The spurious tone under stated inputs, and the spectra of all tests; beside loads none is sought."""
     records = [
         (test.time, _channels(test, measurement.derived_velocity), test.refined_frequency)
         for test in measurement.tests
     ]
     lowest = tone.LOWEST * measurement.model.natural_units().ratio(FREQUENCY)
-    known = tone.of(acting(measurement.model.effects))
-    found = known or tone.find([fitted(*each) for each in records], lowest)
+    found = tone.of(acting(measurement.model.effects))
+    if NORMAL_FORCE not in measurement.columns:
+        found = found or tone.find([fitted(*each) for each in records], lowest)
     return found, tuple(spectrum(*each, found.frequency if found else None) for each in records)
 
 

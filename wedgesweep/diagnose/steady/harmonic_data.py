@@ -18,6 +18,7 @@ from wedgesweep.diagnose.model import Fit, Model
 from wedgesweep.diagnose.next_test.sensors import Sensors
 from wedgesweep.diagnose.noise_spectrum import NoiseSpectrum
 from wedgesweep.diagnose.steady import amplitude_grid, arrays, simulation, stated_input, tone, waveforms
+from wedgesweep.diagnose.steady.column_load import CHANNEL
 from wedgesweep.diagnose.steady.spectra import SIMULATED, Spectrum
 from wedgesweep.diagnose.steady.tone import TONE, TONE_FREQUENCY
 from wedgesweep.diagnose.steady.whitened import WhitenedHarmonics, real
@@ -139,7 +140,7 @@ class HarmonicData(WhitenedHarmonics, FitData):
         return stacked(each)
 
     def power_of(self, response: SteadyResponse) -> np.ndarray:
-        return self.squared(response.whitened)
+        return self.squared(self.of_motion(response.whitened))
 
     def _simulate(self, scenarios: Sequence[Scenario], tolerance: float) -> Simulated:
         rows = [self.records(each) for each in scenarios]
@@ -148,7 +149,7 @@ class HarmonicData(WhitenedHarmonics, FitData):
         toned = self.has_tone(scenarios[0].values)
         done = self._respond(stacked(rows), phase if toned else None, warm, tolerance)
         shape = (len(scenarios), self.tests)
-        harmonics = done.harmonics.reshape(*shape, 2, -1)[:, :, : self.shape[0]]
+        harmonics = done.harmonics.reshape(*shape, *done.harmonics.shape[1:])[:, :, : self.shape[0]]
         return Simulated(harmonics, done.found.reshape(shape), done.warm)
 
     def _respond(
@@ -160,7 +161,7 @@ class HarmonicData(WhitenedHarmonics, FitData):
             return simulation.respond_with_tone(
                 rows, warm, self.shape[1], self.tone, timings, phase, tolerance
             )
-        done = simulation.respond(rows, warm, SIMULATED, tolerance)
+        done = simulation.respond(rows, warm, SIMULATED, tolerance, load=bool(self.loads))
         if self.tone is None:
             return done
         silent = np.zeros((len(rows), 2, 1))  # a periodic response has no tone
@@ -235,6 +236,8 @@ class HarmonicData(WhitenedHarmonics, FitData):
 
     def with_undetected(self, effect: str) -> Self:
         """The data as if a tone had been looked for, between the harmonics, and only noise been found."""
+        if self.loads:  # there is no tone beside them
+            return replace(self, loads=(), by_input=None).with_undetected(effect)
         frequency = tone.between(self.spectra)
         spectra = tuple(s.with_undetected_tone(frequency) for s in self.spectra)
         wider = replace(self, spectra=spectra, tone=frequency, by_input=None)
@@ -332,7 +335,12 @@ class HarmonicData(WhitenedHarmonics, FitData):
         real_part, imaginary = np.split(noise, 2, axis=-1)
         sample = exact + self.unwhiten((real_part + 1j * imaginary).reshape(exact.shape))
         spectra = (self._with_mean(s, mean) for s, mean in zip(self.spectra, sample, strict=True))
-        return replace(self, spectra=tuple(spectra))
+        loads = [
+            each
+            and each._replace(mean=np.append(mean[CHANNEL, : each.mean.size - 1], mean[CHANNEL, -1].real))
+            for each, mean in zip(self.loads, sample, strict=False)
+        ]
+        return replace(self, spectra=tuple(spectra), loads=tuple(loads))
 
     def _with_mean(self, spectrum: Spectrum, padded: np.ndarray) -> Spectrum:
         """A spectrum with other harmonics (C, H), a tone last, than the measured ones."""
@@ -345,6 +353,7 @@ class HarmonicData(WhitenedHarmonics, FitData):
     def rows(self, base: Fit, extended: Fit) -> list[dict[str, Any]]:
         unit, size = self.model.amplitude_unit
         fitted = self.inputs_of(extended.model.scenario(extended.point)) / size
+        loads = self._load_rows(extended)
         return [
             {
                 "frequency_hz": spectrum.frequency,
@@ -353,8 +362,25 @@ class HarmonicData(WhitenedHarmonics, FitData):
                 "periods": spectrum.periods,
                 "noise_displacement_mm": 1e3 * spectrum.sample_noise[0],
                 "noise_velocity_mm_per_s": 1e3 * spectrum.sample_noise[1] if len(spectrum.mean) > 1 else None,
+                **load,
             }
-            for spectrum, stated, amplitude in zip(self.spectra, self.amplitude / size, fitted, strict=True)
+            for spectrum, stated, amplitude, load in zip(
+                self.spectra, self.amplitude / size, fitted, loads, strict=True
+            )
+        ]
+
+    def _load_rows(self, extended: Fit) -> list[dict[str, Any]]:
+        """What each test shows of the load of its column (N), None where it is not compared."""
+        if not self.loads:
+            return [{}] * self.tests
+        simulated = extended.evaluation.response.harmonics[:, CHANNEL, -1].real
+        return [
+            {
+                "noise_normal_force_N": each and each.noise,
+                "mean_normal_force_N": each and float(each.mean[-1].real),
+                "mean_normal_force_fitted_N": each and float(mean),
+            }
+            for each, mean in zip(self.loads, simulated, strict=True)
         ]
 
     def arrays(self, base: Fit, extended: Fit) -> Arrays:

@@ -12,6 +12,7 @@ from wedgesweep.config import Config
 from wedgesweep.diagnose import work
 from wedgesweep.diagnose.fit_parameters import Values
 from wedgesweep.diagnose.model import TOLERANCE
+from wedgesweep.diagnose.steady import column_load
 from wedgesweep.diagnose.steady.harmonic_fit import REMOVED, regressors
 from wedgesweep.diagnose.steady.spectra import SIMULATED
 from wedgesweep.excitation import has_series
@@ -34,6 +35,7 @@ WORK_OF_CASE, WORK_OF_OWN_MECHANICS, WORK_UNDER_SERIES = 3.0, 3.0, 1.7
 class Responses(NamedTuple):
     """Complex harmonics (n, 2, H) of displacement x - y (m) and its rate, and where to start neighbours from.
 
+    With the column's load (n, 3, H + 1): it is the third channel, and its mean (N) the last column.
     ``found`` (n,): whether a response exists; it does not where the wedge locks, and harmonics are NaN then.
     """
 
@@ -50,13 +52,25 @@ def records(model: Config, law: str, values: Values, omega: np.ndarray, amplitud
     return rows
 
 
-def respond(rows: np.ndarray, warm: Warm, harmonics: int, tolerance: float = TOLERANCE) -> Responses:
-    """Steady responses to parameter records (n,)."""
+def respond(
+    rows: np.ndarray, warm: Warm, harmonics: int, tolerance: float = TOLERANCE, load: bool = False
+) -> Responses:
+    """Steady responses to parameter records (n,), if wanted with the load of the column."""
     opens = systems.opens(rows).any()
     accuracy = periodic.Accuracy(tolerance, MOST_WITH_IMPACTS if opens else MOST_PERIODS, rtol=tolerance)
-    found = periodic.respond(rows, warm, accuracy, SAMPLES_PER_PERIOD, harmonics)
+    samples = column_load.SAMPLES_PER_PERIOD if load else SAMPLES_PER_PERIOD
+    found = periodic.respond(rows, warm, accuracy, samples, harmonics, load=load)
     _count(rows, found.periods)
-    return Responses(found.spectra, found.outcome == periodic.OK, found.warm)
+    spectra = column_load.joined(rows, found.spectra, found.load) if load else found.spectra
+    return Responses(spectra, found.outcome == periodic.OK, found.warm)
+
+
+def sticks(rows: np.ndarray) -> np.ndarray:
+    """Whether (n,) set-valued friction holds the mass for a part of the steady responses to records (n,)."""
+    accuracy = periodic.Accuracy(TOLERANCE, MOST_PERIODS, rtol=TOLERANCE)
+    found = periodic.respond(rows, periodic.at_rest(len(rows)), accuracy, SAMPLES_PER_PERIOD, 1)
+    _count(rows, found.periods)
+    return (found.stuck > 0.0) & (rows["friction"]["set_valued"] != 0)
 
 
 def _count(rows: np.ndarray, periods: np.ndarray | int) -> None:

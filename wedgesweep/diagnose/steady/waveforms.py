@@ -8,6 +8,7 @@ from scipy.optimize import root_scalar
 
 from wedgesweep.compiled import compiled
 from wedgesweep.diagnose.model import Fit
+from wedgesweep.diagnose.steady.column_load import CHANNEL
 from wedgesweep.effects import EFFECTS, acting
 from wedgesweep.excitation import has_series
 from wedgesweep.hybrid.interface import cycle, initial_mode, rate
@@ -35,9 +36,10 @@ def waveform(harmonics: np.ndarray) -> np.ndarray:
 
 
 def measured_from_phase_zero(data: "HarmonicData", fit: Fit) -> np.ndarray:
-    """Measured harmonics (T, C, H) without tone and aliases, rotated to phase 0 of the input of a fit."""
+    """Measured harmonics (T, C, H) of the motion without tone and aliases, from phase 0 of a fit's input."""
     response = fit.evaluation.response
-    return data.rotated(data.measured - response.aliases, -response.phase)[..., : data.shape[1]]
+    measured = data.rotated(data.measured - response.aliases, -response.phase)
+    return measured[:, :CHANNEL, : data.shape[1]]
 
 
 def velocity(data: "HarmonicData", harmonics: np.ndarray) -> np.ndarray:
@@ -159,7 +161,7 @@ def _wiener_weight(data: "HarmonicData") -> np.ndarray:
     """Share (T, H) of the harmonics of the velocity that is not noise, by Wiener's rule."""
     above = 0.5 * (np.abs(data.measured) * data.weight)[..., : data.shape[1]] ** 2
     share = 1.0 - ABOVE_NOISE / np.maximum(above, ABOVE_NOISE)
-    return np.where(_has_velocity(data), share[:, -1], share[:, 0])
+    return np.where(_has_velocity(data), share[:, :CHANNEL][:, -1], share[:, 0])
 
 
 def _rows(data: "HarmonicData", fit: Fit) -> np.ndarray:

@@ -3,7 +3,7 @@
 Arrays are padded to the same number of channels and harmonics; what a test does not have weighs nothing.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import inf, nan, pi
@@ -12,6 +12,8 @@ from typing import Self
 import numpy as np
 
 from wedgesweep.config import Config
+from wedgesweep.diagnose.steady import column_load
+from wedgesweep.diagnose.steady.column_load import ColumnLoad
 from wedgesweep.diagnose.steady.simulation import LONGEST_SIMULATED, ToneTiming
 from wedgesweep.diagnose.steady.spectra import SIMULATED, Spectrum
 
@@ -36,6 +38,8 @@ class WhitenedHarmonics:
     ``model_error``: relative error that a model may have; its variance is part of that of the harmonics.
     ``by_input`` (T, m, m): covariance that errors of the inputs add to the harmonics as real vectors (see
     ``real``), in m and m/s; None for inputs that are exactly known.
+    ``loads``: of the column in each test, None where it is not compared; empty if in none. They are the third
+    channel (N), and add a column behind the harmonics, their mean. There is no tone beside them.
     """
 
     model: Config
@@ -51,6 +55,7 @@ class WhitenedHarmonics:
     models: tuple[Config, ...] | None = None
     model_error: float = 0.0
     by_input: np.ndarray | None = None
+    loads: tuple[ColumnLoad | None, ...] = ()
 
     @property
     def tests(self) -> int:
@@ -63,13 +68,16 @@ class WhitenedHarmonics:
 
     @cached_property
     def shape(self) -> tuple[int, int]:
-        """Channels and harmonics of the padded arrays, a tone not counted."""
-        return max(s.mean.shape[0] for s in self.spectra), max(s.harmonics for s in self.spectra)
+        """Channels and harmonics of the padded arrays, a tone and the mean of a load not counted."""
+        channels = max(s.mean.shape[0] for s in self.spectra)
+        if self.loads:
+            channels = column_load.CHANNEL + 1
+        return channels, max(s.harmonics for s in self.spectra)
 
     @property
     def columns(self) -> int:
-        """Number of harmonics, and of the tone if there is one."""
-        return self.shape[1] + (self.tone is not None)
+        """Number of harmonics, and of the tone or the mean of the load if there is one."""
+        return self.shape[1] + (self.tone is not None or bool(self.loads))
 
     @cached_property
     def orders(self) -> np.ndarray:
@@ -78,13 +86,19 @@ class WhitenedHarmonics:
 
     @cached_property
     def turning_orders(self) -> np.ndarray:
-        """Orders by which a start phase turns what is compared; 0 for a tone, which has its own phase."""
+        """Orders by which a start phase turns what is compared; 0 for a mean, and a tone of its own phase."""
         return np.r_[self.orders, [0] * (self.columns - self.orders.size)]
 
     @cached_property
     def observations(self) -> np.ndarray:
         """Real numbers that each test contributes, (T,)."""
-        return np.array([s.observations for s in self.spectra])
+        return np.array([s.observations for s in self.spectra]) + self._numbers_of_load
+
+    @cached_property
+    def _numbers_of_load(self) -> np.ndarray:
+        """Real numbers (T,) that loads contribute, or 0: two of each harmonic, and the mean."""
+        loads = self.loads or (None,) * self.tests
+        return np.array([0 if each is None else 2 * each.mean.size - 1 for each in loads])
 
     @cached_property
     def tone_timings(self) -> tuple[ToneTiming, ...]:
@@ -105,6 +119,7 @@ class WhitenedHarmonics:
             amplitude_std=self.amplitude_std[rows],
             input_phase=None if self.input_phase is None else self.input_phase[rows],
             models=None if self.models is None else tuple(self.models[i] for i in rows),
+            loads=tuple(self.loads[i] for i in rows) if self.loads else (),
         )
         if self.by_input is None:
             return some
@@ -115,24 +130,30 @@ class WhitenedHarmonics:
         place = np.flatnonzero(kept)
         return replace(some, by_input=self.by_input[rows][:, place[:, None], place])
 
-    def _padded(self, values: list[np.ndarray], fill: float) -> np.ndarray:
+    def _padded(
+        self, values: list[np.ndarray], loads: Sequence[np.ndarray | None], fill: float
+    ) -> np.ndarray:
         full = np.full((self.tests, self.shape[0], self.columns), fill, dtype=values[0].dtype)
         for row, value, spectrum in zip(full, values, self.spectra, strict=True):
             channels, harmonics = value.shape[0], spectrum.harmonics
             row[:channels, :harmonics] = value[:, :harmonics]
             if spectrum.tone is not None:
                 row[:channels, -1] = value[:, -1]
+        for row, load in zip(full, loads, strict=False):
+            if load is not None:
+                row[column_load.CHANNEL, : load.size - 1], row[column_load.CHANNEL, -1] = load[:-1], load[-1]
         return full
 
     @cached_property
     def measured(self) -> np.ndarray:
         """Measured harmonics (T, C, H), complex, in m and m/s; 0 where absent."""
-        return self._padded([s.mean for s in self.spectra], 0.0)
+        return self._padded([s.mean for s in self.spectra], [each and each.mean for each in self.loads], 0.0)
 
     @cached_property
     def _noise(self) -> np.ndarray:
         """Variance (T, C, H) of the noise of a harmonic, real and imaginary part together; inf if absent."""
-        return self._padded([s.variance for s in self.spectra], inf)
+        loads = [each and each.variance for each in self.loads]
+        return self._padded([s.variance for s in self.spectra], loads, inf)
 
     @cached_property
     def _power(self) -> np.ndarray:
@@ -141,7 +162,7 @@ class WhitenedHarmonics:
         The error has the rms of the response of its channel, spread evenly over what is compared.
         """
         power = [(np.abs(s.mean) ** 2).mean(axis=1, keepdims=True) + 0.0 * s.variance for s in self.spectra]
-        return self._padded(power, 0.0)
+        return self._padded(power, [each and each.power for each in self.loads], 0.0)
 
     @cached_property
     def _noise_share(self) -> np.ndarray:
@@ -165,12 +186,15 @@ class WhitenedHarmonics:
     def coherence(self) -> np.ndarray:
         """Complex coherence (T, H) of the channels' noise and model errors; the latter are independent."""
         coherence = np.array([s.coherence for s in self.spectra])
-        return coherence[:, None] * np.sqrt(self._noise_share[:, 0] * self._noise_share[:, -1])
+        return coherence[:, None] * np.sqrt(self._noise_share[:, 0] * self._noise_share[:, :2][:, -1])
 
     @property
     def model_misfit(self) -> np.ndarray:
         """Squared misfit (T,) that model errors of the allowed size would leave on average."""
-        return 2.0 * np.where(self.weight > 0.0, 1.0 - self._noise_share, 0.0).sum(axis=(-2, -1))
+        errors = 2.0 * np.where(self.weight > 0.0, 1.0 - self._noise_share, 0.0)
+        if self.loads:
+            errors[..., -1] *= 0.5  # a mean is one number
+        return errors.sum(axis=(-2, -1))
 
     @property
     def noise_floor(self) -> float:
@@ -185,8 +209,14 @@ class WhitenedHarmonics:
 
     @cached_property
     def power(self) -> np.ndarray:
-        """Squared misfit of a simulation of nothing at all, (T,)."""
-        return self.squared(self.whitened)
+        """Squared misfit of a simulation of nothing at all, (T,), in the motion."""
+        return self.squared(self.of_motion(self.whitened))
+
+    def of_motion(self, whitened: np.ndarray) -> np.ndarray:
+        """Whitened harmonics (..., T, C, H) without those of a load, which is there without any motion."""
+        if not self.loads:
+            return whitened
+        return np.where(np.arange(self.shape[0])[:, None] < column_load.CHANNEL, whitened, 0.0)
 
     def squared(self, whitened: np.ndarray) -> np.ndarray:
         """Squared misfit (..., T) of whitened harmonics (..., T, C, H)."""
@@ -231,24 +261,25 @@ class WhitenedHarmonics:
     def whiten(self, harmonics: np.ndarray) -> np.ndarray:
         """Harmonics (..., T, C, H) over their noise, complex, the channels' common noise removed."""
         scaled = harmonics[..., : self.shape[0], :] * self.weight
-        if self.shape[0] == 2 and self.coherence.any():
+        if self.shape[0] > 1 and self.coherence.any():
             share = self.coherence
             second = (scaled[..., 1, :] - share * scaled[..., 0, :]) / np.sqrt(1.0 - abs(share) ** 2)
-            scaled = np.stack([scaled[..., 0, :], second], axis=-2)
+            scaled[..., 1, :] = second
         return scaled
 
     def unwhiten(self, whitened: np.ndarray) -> np.ndarray:
         """Harmonics (..., T, C, H) that ``whiten`` turns into these; 0 where nothing is compared."""
         scaled = whitened
-        if self.shape[0] == 2 and self.coherence.any():
+        if self.shape[0] > 1 and self.coherence.any():
             share = self.coherence
             second = np.sqrt(1.0 - abs(share) ** 2) * whitened[..., 1, :] + share * whitened[..., 0, :]
-            scaled = np.stack([whitened[..., 0, :], second], axis=-2)
+            scaled = whitened.astype(complex)
+            scaled[..., 1, :] = second
         return np.divide(scaled, self.weight, out=np.zeros_like(scaled), where=self.weight > 0.0)
 
     def compared(self, simulated: np.ndarray) -> np.ndarray:
-        """The harmonics (..., H) that are compared, of simulated ones (..., K); a tone is last in both."""
-        if self.tone is None:
+        """Harmonics (..., H) that are compared, of simulated ones (..., K); a tone or mean is last."""
+        if self.columns == self.shape[1]:
             return simulated[..., : self.shape[1]]
         return np.concatenate([simulated[..., : self.shape[1]], simulated[..., -1:]], axis=-1)
 
@@ -273,6 +304,7 @@ class WhitenedHarmonics:
                 found[..., i, :, : spectrum.harmonics] = read[..., : spectrum.harmonics]
                 if spectrum.tone is not None:
                     found[..., i, :, -1] = read[..., -1]
+        found[..., column_load.CHANNEL :, :] = 0.0  # of a load they are filtered out
         return found
 
     def start_phase(self, simulated: np.ndarray, other: np.ndarray | float = 0.0) -> np.ndarray:
@@ -304,6 +336,8 @@ class WhitenedHarmonics:
     def rotated(self, simulated: np.ndarray, phase: np.ndarray) -> np.ndarray:
         """Harmonics (..., T, C, H) rotated by phases (..., T); a tone rotates to match the measurement."""
         turn = np.exp(1j * self.orders * phase[..., None])
+        if self.loads:
+            turn = np.concatenate([turn, np.ones((*phase.shape, 1))], axis=-1)
         if self.tone is not None:
             overlap = (self.whitened[..., -1] * simulated[..., -1].conj()).sum(-1)
             turn = np.concatenate([turn, np.exp(1j * np.angle(overlap))[..., None]], axis=-1)
