@@ -95,7 +95,7 @@ def test_the_tutorial_runs(tmp_path, monkeypatch):
     assert [cause["effect"] for cause in hypotheses["causes"]] == ["cubic_stiffness"]
     tried = {name: each["accuracy"] for each in hypotheses["candidates"] for name in each["effects"][:1]}
     assert tried["cubic_stiffness"] < tried["quintic_stiffness"] < 0.1
-    assert "verified by Radau at rtol 1e-09: 3 cases out of 450" in runs[-2]
+    assert any("verified by Radau at rtol 1e-09: 3 cases out of 450" in each for each in runs)
     assert len(Path("study.csv").read_text().splitlines()) == 451
     assert len(Path("wear.csv").read_text().splitlines()) == 101
     import xarray as xr
