@@ -30,19 +30,10 @@ OF_CYCLE = {
     "relative_friction": ("1", "energy lost per forcing period over 4 x half peak-to-peak x static_load"),
     "equivalent_damping_ratio": ("1", "energy lost per forcing period over 4 pi x largest spring energy"),
 }
-# and these from waveforms.
-FACES = {"column": "normal_force_column", "bolster": "normal_force_bolster"}
-OF_FACES = {
-    f"{face}_force_{name}": ("N", f"{word} normal force on the {face} face of a wedge while slipping")
-    for face in FACES
-    for name, word in (("mean", "mean"), ("min", "smallest"), ("max", "largest"))
-}
+# and this one from waveforms.
 OF_WHEEL = {"minimum_load_ratio": ("1", "smallest force under the side frame over its mean")}
-OF_WAVEFORMS = (
-    "waveforms (keep_waveforms = true), for minimum_load_ratio those of a sine without effects on input, "
-    "sensors or columns, and joints that hold"
-)
-QUANTITIES = OF_MODEL | OF_CYCLE | OF_FACES | OF_WHEEL
+WAVEFORMS = "waveforms (keep_waveforms = true) of a sine, held joints, and no effects on input or sensors"
+QUANTITIES = OF_MODEL | OF_CYCLE | OF_WHEEL
 # Families of effects with which the acceleration under the side frame does not follow from what is stored.
 MOVED_OTHERWISE = ("excitation", "sensor", "two-dimensional")
 
@@ -58,7 +49,7 @@ def engineering(ds: xr.Dataset) -> xr.Dataset:
         message = "load, snubbing and unloading are those of a suspension; this is an oscillator"
         raise ValueError(message)
     models = _Models.of(ds, config)
-    found = _of_model(models) | _of_faces(ds)
+    found = _of_model(models)
     if "scale" not in ds.coords:
         found |= _of_cycle(ds, models, found["static_load"])
     if "phase" in ds.dims and "velocity" in ds and not _moved_otherwise(ds, config):
@@ -80,7 +71,7 @@ def with_quantities(ds: xr.Dataset, names: Iterable[str]) -> xr.Dataset:
     found = engineering(ds) if asked else ds
     for name in asked:
         if name not in found:
-            needs = "an input that repeats" if name in OF_CYCLE else OF_WAVEFORMS
+            needs = "an input that repeats" if name in OF_CYCLE else WAVEFORMS
             message = f"{name}: needs {needs}"
             raise ValueError(message)
     return found
@@ -157,20 +148,6 @@ def _of_cycle(ds: xr.Dataset, models: _Models, load: xr.DataArray) -> dict[str, 
         "relative_friction": lost / (4.0 * travel * load),
         "equivalent_damping_ratio": lost / (2.0 * np.pi * stiffness * travel**2),
     }
-
-
-def _of_faces(ds: xr.Dataset) -> dict[str, xr.DataArray]:
-    found = {}
-    for face, name in FACES.items():
-        if name in ds:
-            force = ds[name].astype(float)
-            dim = str(force.dims[-1])
-            count = force.count(dim)
-            found[f"{face}_force_mean"] = force.sum(dim) / count.where(count > 0)
-            # Undetermined forces, NaN while stuck, lose against any number.
-            found[f"{face}_force_min"] = force.fillna(np.inf).min(dim).where(count > 0)
-            found[f"{face}_force_max"] = force.fillna(-np.inf).max(dim).where(count > 0)
-    return found
 
 
 def _moved_otherwise(ds: xr.Dataset, config: Config) -> bool:

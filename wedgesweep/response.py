@@ -22,6 +22,12 @@ NUMBERS = np.dtype(
             "stick_fraction",
             "stick_phases",
             "minimum_normal_force",
+            "column_force_mean",
+            "column_force_min",
+            "column_force_max",
+            "bolster_force_mean",
+            "bolster_force_min",
+            "bolster_force_max",
             "lift_off_fraction",
             "dissipated_energy",
             "supplied_energy",
@@ -99,6 +105,15 @@ def _opens(p):
     return p.lift_off.restitution >= 0.0
 
 
+@inner
+def _forces_on_faces(sums):
+    """Mean, smallest and largest normal force (N) of each contact while it is determined; else NaN."""
+    if sums.determined == 0.0:
+        return nan, nan, nan, nan, nan, nan
+    first, second = sums.first_sum / sums.determined, sums.second_sum / sums.determined
+    return first, sums.first_least, sums.first_most, second, sums.second_least, sums.second_most
+
+
 @allocating
 def reduce(sums, x, velocity, periods, p, numbers, spectra):
     """Write the numbers, a record of ``NUMBERS``, and the spectra of displacement and velocity.
@@ -120,7 +135,16 @@ def reduce(sums, x, velocity, periods, p, numbers, spectra):
     numbers.mean_displacement = -sums.integral / sums.time * gain
     numbers.stick_fraction = sums.stuck_time / sums.time
     numbers.stick_phases = onsets / periods
-    numbers.minimum_normal_force = sums.normal_force if sums.normal_force < inf else nan
+    smallest = min(sums.first_least, sums.second_least)
+    numbers.minimum_normal_force = smallest if smallest < inf else nan
+    (
+        numbers.column_force_mean,
+        numbers.column_force_min,
+        numbers.column_force_max,
+        numbers.bolster_force_mean,
+        numbers.bolster_force_min,
+        numbers.bolster_force_max,
+    ) = _forces_on_faces(sums)
     numbers.lift_off_fraction = sums.lifted_time / slipping_time if slipping_time > 0.0 else nan
     if _opens(p):
         numbers.lift_off_fraction = sums.either_open / sums.time

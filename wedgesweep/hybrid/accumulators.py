@@ -23,7 +23,13 @@ SUMS = np.dtype(
             "integral",  # of the displacement (m s)
             "stuck_time",  # s
             "lifted_time",  # s with a negative normal force
-            "normal_force",  # smallest while slipping (N)
+            "first_least",  # normal forces of both contacts (N), where they are determined
+            "first_most",
+            "first_sum",  # integral (N s)
+            "second_least",
+            "second_most",
+            "second_sum",
+            "determined",  # s
             "dissipated",  # J
             "supplied",  # J, by the input
             "onsets",  # of sticking
@@ -51,7 +57,9 @@ def empty() -> np.ndarray:
 def clear(sums):
     """Empty the sums."""
     one = sums[0]
-    one.lowest, one.highest, one.normal_force = inf, -inf, inf
+    one.lowest = one.first_least = one.second_least = inf
+    one.highest = one.first_most = one.second_most = -inf
+    one.first_sum = one.second_sum = one.determined = 0.0
     one.peak_velocity = one.time = one.integral = 0.0
     one.stuck_time = one.lifted_time = one.dissipated = one.supplied = 0.0
     one.onsets = one.began_stuck = one.is_stuck = 0.0
@@ -105,6 +113,20 @@ by_record(
 )
 
 
+@inlined
+def _add_forces(sums, first, second):
+    """Add normal forces (N) that may be extremes."""
+    # Most points are none: branches cost less than writing each time.
+    if first < sums.first_least:
+        sums.first_least = first
+    if first > sums.first_most:
+        sums.first_most = first
+    if second < sums.second_least:
+        sums.second_least = second
+    if second > sums.second_most:
+        sums.second_most = second
+
+
 @inner
 def add_motion(sums, y, weight, mode, p):
     """Add the motion at one point, without forces and energies; ``weight`` (s): of the quadrature node."""
@@ -130,13 +152,16 @@ def add(sums, t, y, weight, mode, p):
     sums.dissipated += weight * dissipated
     sums.supplied += weight * supplied
     if first == first:  # NaN: not determined
-        sums.normal_force = min(sums.normal_force, first, second)
+        _add_forces(sums, first, second)
+        sums.first_sum += weight * first
+        sums.second_sum += weight * second
+        sums.determined += weight
         if _pulls(first, second, p):
             sums.lifted_time += weight
 
 
 class Span(NamedTuple):
-    """Integrals over some time (s) of a mode: displacement (m s), energies (J).
+    """Integrals over some time (s) of a mode: displacement (m s), energies (J), normal forces (N s).
 
     ``sticks`` and ``lifted``: whether the contact sticks, and whether a normal force is negative.
     """
@@ -147,6 +172,8 @@ class Span(NamedTuple):
     lifted: bool
     dissipated: float
     supplied: float
+    first: float
+    second: float
 
 
 @inner
@@ -157,6 +184,9 @@ def add_span(sums, span):
     sums.integral += span.integral
     sums.dissipated += span.dissipated
     sums.supplied += span.supplied
+    sums.first_sum += span.first
+    sums.second_sum += span.second
+    sums.determined += span.time
     if span.sticks:
         sums.stuck_time += span.time
     if span.lifted:
@@ -164,10 +194,10 @@ def add_span(sums, span):
 
 
 @inlined
-def add_extremes(sums, x, velocity, normal_force, energies):
-    """Add a point that may be an extreme; ``normal_force`` (N): the smaller one of both contacts."""
+def add_extremes(sums, x, velocity, normal, energies):
+    """Add a point that may be an extreme; ``normal``: forces (N) of both contacts."""
     sums.lowest = min(sums.lowest, x)
     sums.highest = max(sums.highest, x)
     sums.peak_velocity = max(sums.peak_velocity, abs(velocity))
     if energies:
-        sums.normal_force = min(sums.normal_force, normal_force)
+        _add_forces(sums, normal[0], normal[1])

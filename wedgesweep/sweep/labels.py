@@ -2,10 +2,13 @@
 
 from wedgesweep.config import Config
 from wedgesweep.rotation import ROTATION
-from wedgesweep.sweep.variables import CONTINUED, OF_LIFT_OFF, TRANSIENT, VARIABLES
+from wedgesweep.sweep.variables import CONTINUED, FORCES_OF_FACES, OF_LIFT_OFF, TRANSIENT, VARIABLES
 
 # Variables that only joints of a suspension have, and those that only unilateral ones have.
-OF_JOINTS = ("minimum_normal_force", "lift_off_fraction", "normal_force_column", "normal_force_bolster")
+OF_JOINTS = (
+    *("minimum_normal_force", "lift_off_fraction", "normal_force_column", "normal_force_bolster"),
+    *FORCES_OF_FACES,
+)
 OF_UNILATERAL = tuple(variable.name for variable in OF_LIFT_OFF)
 # Words of a suspension: ``x`` and its rates ``v`` and ``a``, of a ``body``, and its ``rest``; ``size``, over
 # which amplitudes are taken; ``source`` of energy, which counts ``per`` period.

@@ -69,6 +69,7 @@ def _numbers(run: Trajectory, p: np.void, x: np.ndarray, velocity: np.ndarray) -
     one, gain = run.sums[0], float(p["displacement_gain"]["scale"])
     slipping = one["time"] - (one["stuck_time"] if p["friction"]["set_valued"] else 0.0)
     lagged = p["velocity_lag"]["time"] > 0.0
+    smallest = min(one["first_least"], one["second_least"])
     return {
         "peak_displacement": gain * max(abs(one["highest"]), abs(one["lowest"])),
         "peak_to_peak": gain * (one["highest"] - one["lowest"]),
@@ -78,8 +79,21 @@ def _numbers(run: Trajectory, p: np.void, x: np.ndarray, velocity: np.ndarray) -
         "stick_fraction": one["stuck_time"] / one["time"],
         "dissipated_energy": one["dissipated"],
         "supplied_energy": one["supplied"],
-        "minimum_normal_force": one["normal_force"] if one["normal_force"] < inf else nan,
+        "minimum_normal_force": smallest if smallest < inf else nan,
+        **_of_faces(one),
         "lift_off_fraction": one["lifted_time"] / slipping if slipping > 0.0 else nan,
+    }
+
+
+def _of_faces(sums: np.void) -> dict[str, float]:
+    """Normal forces of both faces while they are determined; else none."""
+    if sums["determined"] == 0.0:
+        return {}
+    numbers = {"mean": "sum", "min": "least", "max": "most"}
+    return {
+        f"{face}_force_{name}": sums[f"{contact}_{of}"] / (sums["determined"] if of == "sum" else 1.0)
+        for face, contact in (("column", "first"), ("bolster", "second"))
+        for name, of in numbers.items()
     }
 
 

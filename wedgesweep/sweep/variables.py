@@ -29,6 +29,13 @@ class Variable:
 PHASE = ("phase",)
 SPECTRUM = ("harmonic", "part")
 
+# Normal forces of one wedge, by name, with their long names.
+FORCES_OF_FACES = {
+    f"{face}_force_{name}": f"{word} normal force on the {face} face of a wedge while slipping"
+    for face in ("column", "bolster")
+    for name, word in (("mean", "mean"), ("min", "smallest"), ("max", "largest"))
+}
+
 VARIABLES = (
     Variable("amplitude_ratio", "1", "half peak-to-peak of {x} over {size}"),
     Variable("peak_to_peak", "m", "peak-to-peak of {x}"),
@@ -42,6 +49,7 @@ VARIABLES = (
     Variable("dissipated_energy", "J", "energy dissipated by friction and dampers {per}"),
     Variable("supplied_energy", "J", "energy supplied by {source} {per}"),
     Variable("minimum_normal_force", "N", "smallest normal force of either face while slipping{opened}"),
+    *(Variable(name, "N", about) for name, about in FORCES_OF_FACES.items()),
     Variable("lift_off_fraction", "1", "share of {lifted}"),
     Variable(
         "periodicity", "1", "largest change of {x} from the last period but one to the last, over {size}"
@@ -80,7 +88,8 @@ OF_LIFT_OFF = (
 # Within a case of a motion that does not repeat.
 TIME = ("time",)
 _SHARED = (
-    *("stick_fraction", "dissipated_energy", "supplied_energy", "minimum_normal_force", "lift_off_fraction"),
+    *("stick_fraction", "dissipated_energy", "supplied_energy", "minimum_normal_force", *FORCES_OF_FACES),
+    "lift_off_fraction",
     *("status", "message", "rate_evaluations", "steps", "switches", "wall_time"),
 )
 _NAMED = {variable.name: variable for variable in VARIABLES}

@@ -28,12 +28,12 @@ from wedgesweep.systems.suspension.linear_slip import (
     advanced_briefly,
     angles,
     base_acceleration,
+    force_at,
     force_rate,
     jerk,
     motion,
     rotated,
     small_angles,
-    smaller_force_at,
 )
 
 # Scanned intervals per period, in each of which a rate changes its sign at most once; error of the place of
@@ -83,8 +83,9 @@ def _signed(time, rate):
 def _add_point(phase, oscillator, recorder, p):
     """Add what may be an extreme."""
     x, velocity = motion(phase, oscillator, p)
-    force = smaller_force_at(x, base_acceleration(phase, p), oscillator)
-    add_extremes(recorder.sums[0], x, velocity, force, recorder.energies)
+    base = base_acceleration(phase, p)
+    normal = force_at(oscillator.column, x, base), force_at(oscillator.bolster, x, base)
+    add_extremes(recorder.sums[0], x, velocity, normal, recorder.energies)
 
 
 @inner
@@ -118,9 +119,9 @@ def _add_extremes(phase, duration, oscillator, recorder, p):
 
 
 @inlined
-def _force_times_motion(force, travelled, square, base):
-    """Integral of a normal force over x (J), from those of 1, x and u''."""
-    return force.at_rest * travelled + force.by_x * square + force.by_u * base
+def _integrated(force, one, x, base):
+    """Integral of a normal force over x (J) or time (N s), from those of 1, x and u''."""
+    return force.at_rest * one + force.by_x * x + force.by_u * base
 
 
 @inlined
@@ -134,8 +135,8 @@ def _work(start, end, oscillator, mode, p):
     free = (omega * of_quadrature + frequency * of_free) / (frequency**2 - omega**2)
     sine = 0.5 * oscillator.forced * (end.sine**2 - start.sine**2) + frequency * free
     base = -p.input.amplitude * omega**2 * sine
-    column = _force_times_motion(oscillator.column, travelled, square, base)
-    bolster = _force_times_motion(oscillator.bolster, travelled, square, base)
+    column = _integrated(oscillator.column, travelled, square, base)
+    bolster = _integrated(oscillator.bolster, travelled, square, base)
     faces = oscillator.column_mu * g.column_ratio * column + oscillator.bolster_mu * g.bolster_ratio * bolster
     taken = 2.0 * faces - guide_friction.force(motion(start, oscillator, p)[1], mode.guide, p) * travelled
     return taken, supplied_power(base, (0.0, 1.0), p)
@@ -150,7 +151,11 @@ def _add_integrals(start, end, duration, oscillator, mode, recorder, p):
     )
     dissipated, supplied = _work(start, end, oscillator, mode, p)
     lifted = mode.column_sign < 0 or mode.bolster_sign < 0
-    add_span(recorder.sums[0], Span(duration, integral, False, lifted, dissipated, supplied))
+    base = p.input.amplitude * p.input.omega * (end.cosine - start.cosine)
+    column = _integrated(oscillator.column, duration, integral, base)
+    bolster = _integrated(oscillator.bolster, duration, integral, base)
+    span = Span(duration, integral, False, lifted, dissipated, supplied, column, bolster)
+    add_span(recorder.sums[0], span)
 
 
 @inner
