@@ -193,7 +193,7 @@ def engineering(ds: xr.Dataset) -> xr.Dataset:
     Returns
     -------
     xarray.Dataset
-        The same with the quantities of docs/api.md, a number for each case in SI units. Unloading needs stored
+        The same with the quantities of docs/api.md, a number for each case in SI units. Unloading needs
         waveforms, losses a cycle an input that repeats. NaN: a case failed, nothing moves, or (friction
         forces) the wedges lock.
 
