@@ -345,7 +345,7 @@ def _candidates(
     excluded = excluded_effects(measurement)
     effects = [name for name in effects if EFFECTS[name].searched]
     asked = set() if set(effects) == set(candidates()) else set(effects)
-    if not (asked or LOOP in measurement.kinds):
+    if not asked and measurement.kinds != (LOOP,):
         effects = [name for name in effects if not EFFECTS[name].of_loops]
     for name in [
         name for name in effects if name in excluded and (name in asked or excluded[name] == IN_BASE)

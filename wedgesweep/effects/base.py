@@ -32,7 +32,8 @@ class Effect:
     that add forces, coefficients, states or events to the base model when they are not off. An effect
     without any is one that the base model's mechanics can do. ``contains``: effects that are special cases
     of this one. ``systems``: those that have the part which it acts on. ``excludes``: effects that cannot be
-    in one model with it. ``of_loops``: a diagnosis without loops looks for it only where it is asked to.
+    in one model with it. ``of_loops``: a diagnosis looks for it in loops; beside other tests only
+    where it is asked to.
     ``meaning`` may hold names of PARTS in braces; see ``described``.
     """
 

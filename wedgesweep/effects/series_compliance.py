@@ -3,7 +3,7 @@
 The damper has no mass. Behind the spring are friction at mu_d, set-valued for every law, and all damping. A
 run begins with the spring at its free length. With friction only it is Prandtl's element (Prandtl, 1928),
 with damping only Maxwell's.
-Without loops it is a candidate only where it is asked for: a stiff spring takes short steps in runs.
+Beside other tests than loops no candidate unless asked for: a stiff spring takes short steps in runs.
 Neutral: the limit of infinite stiffness; off where the table is absent (0 in the record).
 Default: stiffness must be given; damping added to the model's: 0.
 """
