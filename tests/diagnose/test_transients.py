@@ -1,6 +1,5 @@
 """Transients: free motions in time, from files to a verdict."""
 
-
 import numpy as np
 import pytest
 from scipy.signal import lfilter
