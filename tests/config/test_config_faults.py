@@ -141,6 +141,10 @@ def test_settings_that_exclude_each_other(text, path):
         ("[sweep]\ncase = []", "sweep.case: [] is not a list of tables"),
         ("[sweep]\ncase = [1]", "sweep.case[0]: 1 is not a table"),
         (CASE + CASE, "sweep.case[1]: repeats sweep.case[0]"),
+        (
+            CASE + "suspension.locked_in = 1.0\n" + CASE,
+            "sweep.case[1].suspension.locked_in: missing;",
+        ),
         (CASE + "beat = 1\n", 'sweep.case[0].beat: unknown key; did you mean "beta"?'),
     ],
 )

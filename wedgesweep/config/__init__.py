@@ -2,6 +2,7 @@
 
 import logging
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import reduce
 from math import isnan
 from pathlib import Path
 from typing import Any
@@ -68,6 +69,8 @@ def from_document(given: Mapping[str, Any], source: str = "<config>", directory:
             "sweep: numbers of an oscillator that turns do not vary in a sweep; run a config for each"
         )
     if not problems:
+        problems += _missing_in_cases(document)
+    if not problems:
         problems += _of_varied(document)
     recorded = document.get("input", {})
     if not problems and recorded.get("kind") == "record" and "sha256" not in recorded:
@@ -94,6 +97,17 @@ def _varied(document: Mapping[str, Any]) -> dict[str, Sequence[float]]:
             listed.setdefault(key, []).append(case[key])
     axes = {key: values for key, values in sweep.get("axes", {}).items() if key != ZIP}
     return {**listed, **axes} | (sample.drawn(sweep["sample"]) if "sample" in sweep else {})
+
+
+def _missing_in_cases(document: Mapping[str, Any]) -> Iterator[str]:
+    """Numbers that one case of a list gives, and another lacks, though they have no default."""
+    cases = document["sweep"].get("case", ())
+    for key in dict.fromkeys(key for case in cases for key in case if is_model_key(key)):
+        *tables, name = key.split(".")
+        place = reduce(lambda inside, table: inside.get(table, {}), tables, document)
+        missing = [i for i, case in enumerate(cases) if key not in case and name not in place]
+        if missing:
+            yield f"sweep.case[{missing[0]}].{key}: missing; another case gives it, and it has no default"
 
 
 def _of_varied(document: Mapping[str, Any]) -> Iterator[str]:
