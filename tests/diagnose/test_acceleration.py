@@ -60,6 +60,7 @@ def test_a_cause_is_named_from_an_accelerometer_on_a_mass_that_is_released(tmp_p
     assert list(found.data["channel"].values) == ["acceleration"]
 
 
+@pytest.mark.acceptance
 def test_a_next_release_is_offered_for_the_accelerometer_that_is_there(tmp_path):
     rig, effects, travel, rate, noise = RIGS["oscillator"]
     test = PlannedTest(0.0, 0.0, "mm", 0.0, True, "transient", "release", 2.0, None, travel)

@@ -91,6 +91,7 @@ def test_a_loop_tells_mass_from_spring_where_no_free_motion_does(tmp_path):
         assert finding.rivals == ()
 
 
+@pytest.mark.acceptance
 def test_a_rig_that_drops_its_mass_is_asked_to_drop_it(tmp_path):
     """Near the place where it sticks friction and damping look alike, from farther up they do not."""
     data = dropped(tmp_path, starts=((2e-3, 0.0), (1.8e-3, 0.0)))

@@ -116,7 +116,7 @@ def toml_of(tests):
     return "".join(f"[[test]]\nfrequency_hz = {hertz}\namplitude_N = {force}\n" for hertz, force in tests)
 
 
-@pytest.mark.few(1)
+@pytest.mark.acceptance
 @pytest.mark.parametrize(
     ("effect", "hidden", "recorded", "tests"),
     [

@@ -129,6 +129,7 @@ def test_without_stiffness_it_is_the_other_kind_lower_on_its_springs(law):
     assert lower == pytest.approx(2.0 * PRELOAD / TABLE_1["bolster_spring"])
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("lean", LEANS)
 @pytest.mark.parametrize("law", LAW_NAMES)
 def test_energy_balance_over_a_steady_period(law, lean):
@@ -150,6 +151,7 @@ def solved(solve, case, settle):
     return response.evaluate(solve(case, window, 1e-9, inf), case, harmonics=9).numbers
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("law", LAW_NAMES)
 @pytest.mark.parametrize(
     ("joints", "amplitude", "beta"), [("bilateral", 1e-3, 0.6), ("unilateral", 2e-3, 0.8)]

@@ -50,6 +50,7 @@ def test_published_numbers():
     assert [each for each in checks if not each.holds] == []
 
 
+@pytest.mark.acceptance
 def test_another_friction_is_not_the_published_one():
     settings = config.load(CONFIGS / "den-hartog.toml").document
     for friction, holds in ((1.0, True), (1.001, False)):
