@@ -287,12 +287,15 @@ def test_the_reason_for_a_reservation_is_given(verdict, change, words):
 def test_tests_that_are_too_few_still_tell_the_best_explanations():
     document, data = fixture_diagnosis.build("data-insufficient")
     document["rivals"] = []
-    force = {"guide_friction.force_N": {"value": 0.7, "ci95": [0.6, 0.8]}}
-    records = [{"record": name, "parameters": force} for name in ("a", "b")]
-    document["record_by_record"] = [{"effects": ["guide_friction"], "accuracy": 0.067, "records": records}]
+    number, document["record_by_record"] = {"value": 0.7, "ci95": [0.6, 0.8]}, []
+    for effect, keys in ("directional_damping", ("asymmetry", "time_s")), ("guide_friction", ("force_N",)):
+        own = {"record": "a", "parameters": {f"{effect}.{key}": number for key in keys}}
+        apart = {"effects": [effect], "accuracy": 0.067, "records": [own, own]}
+        document["record_by_record"].append(apart)
     sentence = told(document, data)
     assert "cannot show what; so far, to within the noise," in sentence
-    assert "fitted to each by itself, guide_friction to 6.7 % (guide friction.force 0.7, 0.7 N)" in sentence
+    assert "fitted to each by itself, directional_damping to 6.7" in sentence
+    assert "with fewer numbers, guide_friction to 6.7 % (guide friction.force 0.7, 0.7 N)" in sentence
 
 
 def test_sentence_says_what_the_budget_left_out():

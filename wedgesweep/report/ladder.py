@@ -110,10 +110,15 @@ def held_out(level: Mapping[str, Any]) -> str:
 
 
 def _apart(apart: Sequence[Mapping[str, Any]], document: Mapping[str, Any]) -> str:
-    """What explanations achieve with numbers of their own in each record."""
-    meaning = phrases.meanings(apart[0]["effects"], document)
-    each = "; next best, ".join(map(_numbers_of_records, apart[:2]))
-    return f"what differs from record to record may be {meaning}: fitted to each by itself, {each}"
+    """What the best explanation achieves with numbers of its own in each record, and the simplest one."""
+    best, *others = apart
+    meaning = phrases.meanings(best["effects"], document)
+    own = _numbers_of_records(best)
+    told = f"what differs from record to record may be {meaning}: fitted to each by itself, {own}"
+    simplest = min(apart, key=lambda each: len(each["records"][0]["parameters"]))
+    if simplest is not best:
+        return f"{told}; with fewer numbers, {_numbers_of_records(simplest)}"
+    return "; next best, ".join([told, *map(_numbers_of_records, others[:1])])
 
 
 def _numbers_of_records(one: Mapping[str, Any]) -> str:
