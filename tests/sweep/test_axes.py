@@ -126,6 +126,12 @@ amplitude_mm = 0.3
     assert ds["amplitude_ratio"].values.tolist() == [each["amplitude_ratio"].item() for each in expected]
 
 
+def test_listed_cases_may_all_give_what_has_no_default():
+    case = '[[sweep.case]]\nfriction_law = "coulomb"\nbeta = 1.0\namplitude_mm = 0.3\n'
+    read = config.parse(f"{case}suspension.locked_in = 0.5\n{case}suspension.locked_in = 1.0\n")
+    assert read.case_coordinates()["locked_in"][1].tolist() == [0.5, 1.0]
+
+
 def test_effects_vary_from_off_to_on_and_need_no_table(tmp_path):
     axes = "[sweep.axes]\neffects.guide_friction.force_N = [0.0, 2.0]\n"
     ds = sweep(tmp_path, axes).run(n_jobs=1)

@@ -9,7 +9,7 @@ from typing import Any
 
 from wedgesweep import __version__, rotation, toml
 from wedgesweep.config import commented, force_table, sample
-from wedgesweep.config.axes import ZIP, corners, is_model_key, with_nominal, with_numbers
+from wedgesweep.config.axes import ZIP, corners, is_model_key, model_keys, with_nominal, with_numbers
 from wedgesweep.config.cases import NATURAL, AmplitudeUnit, Case, Cases, natural_frequency
 from wedgesweep.config.contradictions import contradictions
 from wedgesweep.config.declarations import root
@@ -102,7 +102,7 @@ def _varied(document: Mapping[str, Any]) -> dict[str, Sequence[float]]:
 def _missing_in_cases(document: Mapping[str, Any]) -> Iterator[str]:
     """Numbers that one case of a list gives, and another lacks, though they have no default."""
     cases = document["sweep"].get("case", ())
-    for key in dict.fromkeys(key for case in cases for key in case if is_model_key(key)):
+    for key in model_keys(cases):
         *tables, name = key.split(".")
         place = reduce(lambda inside, table: inside.get(table, {}), tables, document)
         missing = [i for i, case in enumerate(cases) if key not in case and name not in place]

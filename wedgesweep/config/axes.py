@@ -1,7 +1,7 @@
 """Numbers of the model that a sweep varies: dotted keys such as "suspension.wedge_angle_deg"."""
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import product
 from typing import Any
@@ -28,6 +28,11 @@ MOST_CORNERS = 4096
 def is_model_key(name: str) -> bool:
     """Whether a name is the dotted key of a number of the model."""
     return "." in name
+
+
+def model_keys(cases: Iterable[Mapping[str, Any]]) -> list[str]:
+    """Dotted keys of the numbers of the model that any of listed cases gives."""
+    return list(dict.fromkeys(key for case in cases for key in case if is_model_key(key)))
 
 
 def dimension(key: str) -> str:

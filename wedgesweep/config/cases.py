@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from wedgesweep.config import sample
-from wedgesweep.config.axes import ZIP, dimension, given_number, is_model_key
+from wedgesweep.config.axes import ZIP, dimension, given_number, is_model_key, model_keys
 
 LAW, BETA, FREQUENCY, AMPLITUDE, SCALE = "friction_law", "beta", "frequency", "amplitude", "scale"
 SAMPLE = "sample"
@@ -235,9 +235,10 @@ def _of_input(sweep: Mapping[str, Any], omega_n: float) -> Iterator[Axis]:
 def _listed(document: Mapping[str, Any], omega_n: float) -> dict[str, np.ndarray]:
     """Columns of a list of cases; where a case does not give a number of the model it is the nominal one."""
     cases = document["sweep"]["case"]
-    keys = list(dict.fromkeys(key for case in cases for key in case if is_model_key(key)))
+    keys = model_keys(cases)
     numbers = {
-        key: np.array([case.get(key, given_number(document, key)) for case in cases], float) for key in keys
+        key: np.array([case[key] if key in case else given_number(document, key) for case in cases], float)
+        for key in keys
     }
     columns = {LAW: np.array([case["friction_law"] for case in cases]), **numbers}
     if keys and all("frequency_hz" in case for case in cases):
