@@ -126,7 +126,7 @@ def test_the_base_model_goes_on_from_where_an_extension_got(monkeypatch):
     with monkeypatch.context() as alone:
         alone.setattr("wedgesweep.diagnose.search.refit_without_influential_tests", lambda fit: fit)
         alone.setattr(
-            "wedgesweep.diagnose.search.best_of",
+            "wedgesweep.diagnose.search._halved",
             lambda model, evaluations, *_, **__: minimise(model, evaluations[0], iterations=1),
         )
         alone.setattr("wedgesweep.diagnose.search._nuisances_held", lambda model, evaluation: evaluation)

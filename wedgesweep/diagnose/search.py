@@ -230,7 +230,7 @@ def base_fit(search: Search) -> Explained:
     if not search.uses("starts of uncertain numbers", len(points) > 1):
         points = points[:1]
     evaluations = search.nuisances_searched(model, points)
-    fit = best_of(model, evaluations, BASE_SCHEDULE, each=search.each)
+    fit = _halved(model, evaluations, BASE_SCHEDULE, each=search.each)
     if len(model.uncertain) and fit.p < POSSIBLE:
         fit = search.tried(
             "nuisances held", fit, lambda fit: min(fit, _from_held(search, model, evaluations), key=_chi2)
@@ -245,7 +245,7 @@ def _from_held(search: Search, model: Model, evaluations: Sequence[Evaluation]) 
     They may have made up for wrong values of uncertain parameters.
     """
     held = search.each(lambda evaluation: _nuisances_held(model, evaluation), evaluations)
-    return best_of(model, held, BASE_SCHEDULE, each=search.each)
+    return _halved(model, held, BASE_SCHEDULE, each=search.each)
 
 
 def refit_base(known: Explained) -> Explained:
@@ -376,7 +376,6 @@ def best_of(
     evaluations: Sequence[Evaluation],
     schedule: Sequence[Round] = SCHEDULE,
     limit: float = np.inf,
-    each: Callable[..., Iterable[Fit]] = map,
 ) -> Fit:
     """Fit from several evaluations by successive halving; the best fit is continued to its minimum.
 
@@ -390,10 +389,19 @@ def best_of(
         Rounds, into each of which fewer fits enter.
     limit : float
         The search ends after a round whose best fit has a larger chi-squared than this.
-    each : callable
-        Applies a function to items: ``map``, or one with threads.
     """
-    evaluations = model.evaluate_all([each.point for each in _leading(evaluations, schedule[0].entering)])
+    starts = [evaluation.point for evaluation in _leading(evaluations, schedule[0].entering)]
+    return _halved(model, model.evaluate_all(starts), schedule, limit)
+
+
+def _halved(
+    model: Model,
+    evaluations: Sequence[Evaluation],
+    schedule: Sequence[Round],
+    limit: float = np.inf,
+    each: Callable[..., Iterable[Fit]] = map,
+) -> Fit:
+    """As ``best_of`` from evaluations by the model itself; ``each`` maps a function, perhaps in threads."""
     for entering, iterations in schedule:
         fits = list(each(partial(minimise, model, iterations=iterations), _leading(evaluations, entering)))
         evaluations = [fit.evaluation for fit in fits]
