@@ -9,6 +9,7 @@ from math import nan
 
 from wedgesweep.compiled import inlined
 from wedgesweep.effects.base import NUMERICAL, OSCILLATOR, Effect
+from wedgesweep.effects.directional_damping import ASYMMETRY
 from wedgesweep.quantity import Quantity
 
 EQUATIONS = ("R = -coefficient (1 + asymmetry sign(z')) z' (1 + |z'|/velocity)^(exponent - 1)",)
@@ -37,14 +38,7 @@ EFFECT = Effect(
             search=(1.0, 500.0),
             logarithmic=True,
         ),
-        Quantity(
-            "asymmetry",
-            0.0,
-            "half the difference of both directions over the mean",
-            minimum=-1.0,
-            maximum=1.0,
-            search=(-1.0, 1.0),
-        ),
+        ASYMMETRY,
         Quantity("exponent", 0.5, "the power", minimum=0.0, maximum=1.0),
     ),
     extends=("coefficient",),

@@ -18,6 +18,15 @@ SYMBOLS = {
     "R_0": Meaning("force of that damper", "N"),
 }
 
+ASYMMETRY = Quantity(
+    "asymmetry",
+    0.0,
+    "half the difference of both directions over the mean",
+    minimum=-1.0,
+    maximum=1.0,
+    search=(-1.0, 1.0),
+)
+
 EFFECT = Effect(
     name="directional_damping",
     family="missing-force",
@@ -31,14 +40,7 @@ EFFECT = Effect(
             minimum=0.0,
             search=(0.0, 100.0),
         ),
-        Quantity(
-            "asymmetry",
-            0.0,
-            "half the difference of both directions over the mean",
-            minimum=-1.0,
-            maximum=1.0,
-            search=(-1.0, 1.0),
-        ),
+        ASYMMETRY,
     ),
     extends=("coefficient", "asymmetry"),
     contains=("viscous_damping",),
