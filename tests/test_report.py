@@ -290,8 +290,8 @@ def test_tests_that_are_too_few_still_tell_the_best_explanations():
     number, document["record_by_record"] = {"value": 0.7, "ci95": [0.6, 0.8]}, []
     for effect, keys in ("directional_damping", ("asymmetry", "time_s")), ("guide_friction", ("force_N",)):
         own = {"record": "a", "parameters": {f"{effect}.{key}": number for key in keys}}
-        apart = {"effects": [effect], "accuracy": 0.067, "records": [own, own]}
-        document["record_by_record"].append(apart)
+        one = {"effects": [effect], "accuracy": 0.067, "records": [own, own]}
+        document["record_by_record"].append(one)
     sentence = told(document, data)
     assert "cannot show what; so far, to within the noise," in sentence
     assert "fitted to each by itself, directional_damping to 6.7" in sentence

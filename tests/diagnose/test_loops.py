@@ -384,10 +384,10 @@ def test_a_cause_whose_size_differs_from_record_to_record_is_told_with_each_size
     (tmp_path / "model.toml").write_text(model)
     found = diagnosed(path, ["guide_friction", "viscous_damping"])
     assert found.verdict == "none-of-mine"
-    apart, *_ = found.document["record_by_record"]
-    assert apart["effects"] == ["guide_friction"]
-    assert apart["accuracy"] < 0.1 * found.document["ladder"][1]["accuracy"]
-    for own, force in zip(apart["records"], forces, strict=True):
+    first, *_ = found.document["record_by_record"]
+    assert first["effects"] == ["guide_friction"]
+    assert first["accuracy"] < 0.1 * found.document["ladder"][1]["accuracy"]
+    for own, force in zip(first["records"], forces, strict=True):
         low, high = own["parameters"]["guide_friction.force_N"]["ci95"]
         assert low < force < high
         assert high - low < 0.2

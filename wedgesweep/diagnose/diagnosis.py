@@ -21,7 +21,7 @@ from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.next_test.offer import NextTest
 from wedgesweep.diagnose.next_test.recommend import recommend
 from wedgesweep.diagnose.profile_likelihood import profile_likelihood
-from wedgesweep.diagnose.record_by_record import Apart
+from wedgesweep.diagnose.record_by_record import ByRecord
 from wedgesweep.diagnose.score_test import Score
 from wedgesweep.diagnose.search import OTHER_NUISANCES, Explained, Search, base_fit, quiet, single_fits
 from wedgesweep.diagnose.stages import PAIRS, REFINEMENT, explain, taken
@@ -64,7 +64,7 @@ class Diagnosis:
     fitted at all. ``unfinished``: steps without a result, with the reason; ``failed``: effects whose fits
     raised an error; ``ended``: the interrupt or time limit that ended the diagnosis early. ``changes``: what
     each stage changed; ``without``: stages that were left out; ``empirical``: the force that is missing where
-    no name explains it; ``apart``: effects whose numbers differ from record to record.
+    no name explains it; ``by_record``: effects whose numbers differ from record to record.
     """
 
     measurement: Measurement
@@ -86,7 +86,7 @@ class Diagnosis:
     changes: tuple[Change, ...] = ()
     without: tuple[str, ...] = ()
     empirical: EmpiricalForce | None = None
-    apart: tuple[Apart, ...] = ()
+    by_record: tuple[ByRecord, ...] = ()
 
     @property
     def best(self) -> Best:
@@ -307,11 +307,11 @@ def _with_more_effects(course: Course) -> Diagnosis:
     return replace(found, ladder=levels)
 
 
-def _with_records_apart(course: Course) -> Diagnosis:
+def _with_records_by_themselves(course: Course) -> Diagnosis:
     found = course.found
     if found.finding.verdict not in ABSTAINING or len(found.ladder) < 2:
         return found
-    return replace(found, apart=record_by_record.record_by_record(course.search, found.ladder[1]))
+    return replace(found, by_record=record_by_record.record_by_record(course.search, found.ladder[1]))
 
 
 def _with_empirical_force(course: Course) -> Diagnosis:
@@ -437,7 +437,7 @@ STEPS: dict[str, Callable[[Course], Diagnosis]] = {
     "held-out tests": _held_out,
     "accuracy": _rated,
     forward.NAME: _with_more_effects,
-    record_by_record.NAME: _with_records_apart,
+    record_by_record.NAME: _with_records_by_themselves,
     "empirical force": _with_empirical_force,
     "scores": _scored,
     "next test": _with_next_test,

@@ -23,7 +23,7 @@ COMPARED = 3
 LEFT = 2.0 / 3.0
 
 
-class Apart(NamedTuple):
+class ByRecord(NamedTuple):
     """An explanation with numbers of its own in each record.
 
     ``accuracy``: of the fits together; ``fits``: to each record, after its name.
@@ -34,7 +34,7 @@ class Apart(NamedTuple):
     fits: tuple[tuple[str, Fit], ...]
 
 
-def record_by_record(search: Search, level: Level) -> tuple[Apart, ...]:
+def record_by_record(search: Search, level: Level) -> tuple[ByRecord, ...]:
     """The leading explanations of a level by themselves in each record, the most accurate first.
 
     None where that explains the records hardly better, or where there is one record.
@@ -42,13 +42,13 @@ def record_by_record(search: Search, level: Level) -> tuple[Apart, ...]:
     records = search.data.tests_of_records
     if len(records) < 2:
         return ()
-    found = search.each(lambda each: _apart(each, records), level.rated[:COMPARED])
+    found = search.each(lambda each: _of_records(each, records), level.rated[:COMPARED])
     found = sorted(found, key=lambda each: each.accuracy)
     return tuple(found) if found[0].accuracy < LEFT * level.best.accuracy else ()
 
 
-def _apart(rated: Rated, records: Sequence[tuple[str, np.ndarray]]) -> Apart:
+def _of_records(rated: Rated, records: Sequence[tuple[str, np.ndarray]]) -> ByRecord:
     fits = [(name, accuracy.refined(subset_fit(rated.fit, rows)).fit) for name, rows in records]
     together = [(fit.model.data, fit.evaluation) for _, fit in fits]
     dof = sum(fit.dof for _, fit in fits)
-    return Apart(rated.effects, accuracy.of_responses(together, dof), tuple(fits))
+    return ByRecord(rated.effects, accuracy.of_responses(together, dof), tuple(fits))

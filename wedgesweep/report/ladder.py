@@ -51,13 +51,13 @@ def _added(further: Sequence[Mapping[str, Any]]) -> Markup:
 
 def _record_by_record(result: DiagnosisResult) -> Markup:
     """The numbers of explanations that differ from record to record."""
-    apart = result.document.get("record_by_record", [])
-    if not apart:
+    by_record = result.document.get("record_by_record", [])
+    if not by_record:
         return Markup()
-    head = ("record", *(phrases.combination(each["effects"]) for each in apart))
+    head = ("record", *(phrases.combination(each["effects"]) for each in by_record))
     rows = [
         [own[0]["record"], *("; ".join(starmap(phrases.compact, one["parameters"].items())) for one in own)]
-        for own in zip(*(each["records"] for each in apart), strict=True)
+        for own in zip(*(each["records"] for each in by_record), strict=True)
     ]
     return html.table("Fitted to each record by itself (95 % intervals)", head, rows, 0)
 
@@ -83,8 +83,8 @@ def clauses(result: DiagnosisResult) -> list[str]:
     """What the best single effect explains, and the best pair where it is much better, as clauses."""
     levels = levels_of(result)
     found = [_clause(level, levels[0], result.document) for level in noteworthy(result)]
-    apart = result.document.get("record_by_record", [])
-    return [*found, _apart(apart, result.document)] if apart else found
+    by_record = result.document.get("record_by_record", [])
+    return [*found, _of_records(by_record, result.document)] if by_record else found
 
 
 def noteworthy(result: DiagnosisResult) -> list[Mapping[str, Any]]:
@@ -109,13 +109,13 @@ def held_out(level: Mapping[str, Any]) -> str:
     return "" if size is None else f"held-out tests: {phrases.accuracy(size)}"
 
 
-def _apart(apart: Sequence[Mapping[str, Any]], document: Mapping[str, Any]) -> str:
+def _of_records(by_record: Sequence[Mapping[str, Any]], document: Mapping[str, Any]) -> str:
     """What the best explanation achieves with numbers of its own in each record, and the simplest one."""
-    best, *others = apart
+    best, *others = by_record
     meaning = phrases.meanings(best["effects"], document)
     own = _numbers_of_records(best)
     told = f"what differs from record to record may be {meaning}: fitted to each by itself, {own}"
-    simplest = min(apart, key=lambda each: len(each["records"][0]["parameters"]))
+    simplest = min(by_record, key=lambda each: len(each["records"][0]["parameters"]))
     if simplest is not best:
         return f"{told}; with fewer numbers, {_numbers_of_records(simplest)}"
     return "; next best, ".join([told, *map(_numbers_of_records, others[:1])])

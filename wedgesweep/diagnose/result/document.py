@@ -17,7 +17,7 @@ from wedgesweep.diagnose.explanation import ADEQUATE, POSSIBLE, Explanation, par
 from wedgesweep.diagnose.ladder import Level, Rated
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.next_test.offer import SEPARATED, NextTest
-from wedgesweep.diagnose.record_by_record import Apart
+from wedgesweep.diagnose.record_by_record import ByRecord
 from wedgesweep.diagnose.result import missing_force
 from wedgesweep.diagnose.result.estimates import finite, parameters, uncertain
 from wedgesweep.diagnose.verdict import LARGER, p_where_it_shows
@@ -51,7 +51,7 @@ def document(found: Diagnosis) -> dict[str, Any]:
         "excluded": excluded_effects(found.measurement),
         "next_test": _next_test(found.next_test),
         "ladder": [_level(each) for each in found.ladder],
-        "record_by_record": [_apart(each) for each in found.apart],
+        "record_by_record": [_of_records(each) for each in found.by_record],
         "empirical_force": missing_force.document(found.empirical),
         "extended": list(best.effects),
         "never_steady": _never_steady(best.fit),
@@ -225,7 +225,7 @@ def _rated(each: Rated) -> dict[str, Any]:
     return {"effects": list(each.effects), "accuracy": finite(each.accuracy)}
 
 
-def _apart(each: Apart) -> dict[str, Any]:
+def _of_records(each: ByRecord) -> dict[str, Any]:
     """An explanation whose numbers differ from record to record."""
     records = [{"record": name, "parameters": _by_name(parameters(fit))} for name, fit in each.fits]
     return {"effects": list(each.effects), "accuracy": finite(each.accuracy), "records": records}
