@@ -91,6 +91,21 @@ def test_numbers_of_the_model_are_those_of_the_record(tmp_path, header):
     assert "shows about 2" in (tmp_path / "model.toml").read_text()
 
 
+def test_the_load_of_two_faces_belongs_to_the_model_of_each_test(tmp_path):
+    files, random = [], np.random.default_rng(1)
+    for load in (20.0, 60.0):
+        t, d, f = loop(mass=0.0, damping=0.0, friction=0.12 * load)
+        columns = t, d, f, load * (1.0 + 0.02 * random.normal(size=t.size))
+        files.append(text(tmp_path / f"{load:g}N.csv", *columns, header="t,Stroke mm,Friction N,Load N"))
+    found = begun(tmp_path, *files)
+    loads = [test.model["oscillator.normal_force_N"] for test in found.tests]
+    assert loads == pytest.approx([20.0, 60.0], rel=1e-3)
+    assert found.model.friction["dynamic"] == pytest.approx(0.12, rel=0.02)
+    # Motion of one frequency shows the spring less the inertia, here neither.
+    assert found.model.oscillator["spring"] == 0.0
+    assert "no record shows it" in (tmp_path / "model.toml").read_text()
+
+
 def test_a_free_motion_begins_when_it_is_let_go(tmp_path):
     text(tmp_path / "one.txt", *decay(), delimiter="\t")
     found = begun(tmp_path, tmp_path / "one.txt")

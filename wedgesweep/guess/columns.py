@@ -10,7 +10,7 @@ import numpy as np
 from wedgesweep.measured.declarations import QUANTITIES
 from wedgesweep.readers.survey import Column
 from wedgesweep.readers.table import DATETIME
-from wedgesweep.units import DAY, FOREIGN, UNITS, is_unit, usual
+from wedgesweep.units import DAY, FOREIGN, UNITS, angular, is_unit, usual
 
 MOTIONS = ("displacement", "velocity", "acceleration")
 FORCE, INPUT, TIME = "force", "input", "time"
@@ -19,7 +19,7 @@ STEMS = {
     TIME: r"time|\bdate|zeit|temps\b|tempo\b|stamp|seconds|clock",
     "acceleration": r"acc|beschl|ddot|\bimu",
     "velocity": r"vel|speed|geschw|vitesse|rpm|omega|tacho|qdot|xdot|gyro",
-    FORCE: r"force|torque|trq|kraft|moment|thrust|effort|load|traction|\btau",
+    FORCE: r"force|friction|reibung|torque|trq|kraft|moment|thrust|effort|load|traction|\btau",
     "displacement": r"disp|pos|ang[lu]|weg\b|winkel|laser|lvdt|stroke|encod|deflect|travel|rotation|extens"
     r"|position|distance|hub\b|theta|plate|mass|auslenk|drehwinkel",
 }
@@ -35,7 +35,12 @@ SYMBOLS = {
 DRIVES = r"input|excit|shaker|base|ground|table|driv(er|ing)|exciter|source|anreg|fuss|support|wall"
 # A count of samples, which is no time.
 COUNTS = r"n|nr\.?|no\.?|#|index|samples?|points?|count(er)?|row|scan"
-NOT_MEASURED = r"ref|desired|target|set.?p|command|cmd|soll|_des|error|not selected|status|trigger|limit"
+NOT_MEASURED = (
+    r"ref|desired|target|set.?p|command|cmd|soll|_des|error|not selected|status|trigger|limit|coeff|\bcof\b"
+)
+# Names of the load that presses two faces together, and the std over the mean below which it is set, not
+# a response: control of a tribometer's load holds it to a few per cent.
+PRESSES, SET = r"load|normal|clamp|\bf_?[nz]\b|last\b|kraft_?n\b", 0.3
 # A motor's current may stand for its torque.
 STANDS_FOR_FORCE = r"curr|amp|strom|pwm|duty"
 # Points of a column for a quantity.
@@ -81,11 +86,12 @@ class Chosen:
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """Columns of a run: its time, its channels by name, and what is left."""
+    """Columns of a run: its time, its channels by name, what is left, and the load (N) of its faces."""
 
     time: Chosen | None
     channels: Mapping[str, Chosen]
     left: tuple[Column, ...] = ()
+    load: float | None = None
 
 
 def unit_of(column: Column, quantities: Sequence[str]) -> str:
@@ -144,15 +150,34 @@ def choose(columns: Sequence[Column]) -> Run:
     """The channels among the columns of a run."""
     time = next((column for column in columns if is_time(column)), None)
     rest = [column for column in columns if column is not time and not is_time(column) and _varies(column)]
-    channels = _by_name(rest)
+    load = next(filter(_presses, columns), None)
+    channels = _by_name([column for column in rest if column is not load])
+    if FORCE not in channels:
+        load, channels = None, _by_name(rest)
     if not any(name in channels for name in MOTIONS):
         unnamed = [column for column in rest if not _names_anything(column)]
         channels |= _by_numbers(unnamed, None if time is None else time.channel.values)
     chosen = with_units(channels)
     if "velocity" in chosen and "displacement" in chosen:
         chosen["velocity"] = _derived(chosen, time)
-    left = [each for each in columns if each is not time and all(each is not c for c in channels.values())]
-    return Run(None if time is None else _clock(time), chosen, tuple(left))
+    used = (time, load, *channels.values())
+    left = tuple(column for column in columns if all(column is not each for each in used))
+    return Run(
+        None if time is None else _clock(time), chosen, left, None if load is None else _mean_load(load)
+    )
+
+
+def _presses(column: Column) -> bool:
+    """Whether a column may be the load that presses two faces together: it hardly varies."""
+    unit, values = unit_of(column, [FORCE]), _numbers(column)
+    is_force = unit in UNITS[FORCE] and not angular(unit)
+    named = re.search(PRESSES, column.label.lower()) and not re.search(NOT_MEASURED, column.label.lower())
+    return bool(is_force and named and values.size and values.std() < SET * values.mean())
+
+
+def _mean_load(column: Column) -> float:
+    """Mean (N) of a column of loads."""
+    return float(_numbers(column).mean()) * UNITS[FORCE][unit_of(column, [FORCE])]
 
 
 def _numbers(column: Column) -> np.ndarray:

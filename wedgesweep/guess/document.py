@@ -7,7 +7,7 @@ from typing import Any
 
 from wedgesweep import rotation, toml
 from wedgesweep.guess.columns import INPUT, Chosen
-from wedgesweep.guess.model import Numbers
+from wedgesweep.guess.model import NORMAL_FORCE, Numbers
 from wedgesweep.guess.tests import UNKNOWN_RATE, Guessed
 from wedgesweep.measured.declarations import ABSOLUTE, LOOP, STEADY
 from wedgesweep.readers.survey import Survey
@@ -111,9 +111,13 @@ def _dialect(surveys: Sequence[Survey]) -> Iterator[str]:
 
 def _uncertain(found: Numbers, kind: str) -> Iterator[str]:
     """Numbers of the model that come from the records."""
-    guessed = {"bolster_stiffness": found.spring > 0.0, "bolster_mass": kind == LOOP and not found.unseen}
+    guessed = {
+        "bolster_stiffness": found.spring > 0.0,
+        "bolster_mass": kind == LOOP and not found.unseen,
+        "friction_level": found.load > 0.0,
+    }
     if any(guessed.values()):
-        yield from ("", "# Spring and mass of the model are guesses so far; leave out what you know better.")
+        yield from ("", "# These numbers of the model are guesses so far; leave out what you know better.")
         yield from ("[measurement.uncertain]", *(f"{name} = {GUESSED}" for name in guessed if guessed[name]))
 
 
@@ -126,6 +130,9 @@ def _test(test: Guessed, first: Guessed, path: Path) -> Iterator[str]:
         yield f"from_s = {test.part.start!r}"
     if test.part.end is not None:
         yield f"to_s = {test.part.end!r}"
+    if test.run.load is not None:
+        load = float(f"{test.run.load:.4g}")
+        yield f"model = {toml.inline({NORMAL_FORCE: load})}  # mean load of the record"
     if test.kind == STEADY and INPUT not in test.run.channels:
         yield f"{ASK}how large is the motion of the base (amplitude_mm or _rad) or the force (amplitude_N)?"
         yield "# amplitude_mm = 1.0"
@@ -152,7 +159,12 @@ def model(found: Numbers, forced: bool, turns: bool) -> str:
         "damping": "the diagnosis tells what damps it" if "damping" in found.unseen else "by the record",
     }
     size = f"{found.friction:.3g} {'N m' if turns else 'N'}"
-    friction = f"; the record shows about {size}" if found.friction else ""
+    friction = "no friction, so that the diagnosis looks for it"
+    friction += f"; the record shows about {size}" if found.friction else ""
+    if found.load:
+        friction = "each test has its own"
+    coefficient = f"{found.friction:.3g}  # by the record"
+    law = ("[friction]", f"dynamic = {coefficient}", f"static = {coefficient}", "") if found.load else ()
 
     def number(key: str, value: float) -> str:
         name, factor = rotation.turned_key(key) if turns else (key, 1.0)
@@ -168,9 +180,10 @@ def model(found: Numbers, forced: bool, turns: bool) -> str:
             f"{number('mass_kg', found.mass)}  # {notes['mass']}",
             f"{number('spring_N_per_mm', 1e-3 * found.spring)}  # by the record",
             f"{number('damping_N_s_per_m', found.damping)}  # {notes['damping']}",
-            f"{number('normal_force_N', 0.0)}  # no friction, so that the diagnosis looks for it{friction}",
+            f"{number('normal_force_N', found.load)}  # {friction}",
             f'contact = "{"ground" if forced else "base"}"',
             "",
+            *law,
             "[sweep]  # of no matter for a diagnosis, except for excitation",
             'friction_law = "coulomb"',
             f'excitation = "{"force" if forced else "base"}"',

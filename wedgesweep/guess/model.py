@@ -17,18 +17,23 @@ HARMONICS, NOISY, LEAST = (12.0, 8.0, 5.0, 3.0, 2.0), 0.05, 0.01
 LINES = 1e-3
 # Force of inertia over all force for a mass that no record shows.
 UNSEEN = 1e-3
+# Correlation from which acceleration and place are one motion at one frequency.
+ALIKE = 0.99
 # Share of the largest velocity beyond which friction has its sign.
 MOVING = 0.1
 # Part of a free motion at its end that shows where it rests, and how much finer than a line spectra are read.
 TAIL, PADDED = 0.1, 8
 # Tests that are looked at.
 TESTS = 6
+# The number of a test's model that its load is.
+NORMAL_FORCE = "oscillator.normal_force_N"
 
 
 @dataclass(frozen=True)
 class Numbers:
-    """SI numbers of an oscillator; ``friction`` (N) is what dry friction takes beside them.
+    """SI numbers of an oscillator; ``friction`` is what dry friction takes beside them.
 
+    It is a force (N) or, where each test states its load, a coefficient; ``load`` (N) is the first one then.
     ``unseen``: numbers that do not come from the records.
     """
 
@@ -37,6 +42,7 @@ class Numbers:
     damping: float
     friction: float = 0.0
     unseen: tuple[str, ...] = ()
+    load: float = 0.0
 
 
 def numbers(measurement: Measurement) -> Numbers:
@@ -63,19 +69,37 @@ def _frequency(test: TestRecord) -> float:
 
 
 def _under_force(tests: tuple[TestRecord, ...]) -> Numbers:
-    """Parts of a force by acceleration, velocity, place and the sign of velocity."""
+    """Parts of a force by acceleration, velocity, place and the sign of velocity times a stated load."""
     blocks, forces = [], []
-    for test in tests:
+    loads = [test.model.get(NORMAL_FORCE, 0.0) for test in tests]
+    loaded = min(loads) > 0.0
+    for test, load in zip(tests, loads, strict=True):
         parts, force = _parts(test)
+        parts[:, -1] *= load if loaded else 1.0
         blocks.append(parts - parts.mean(axis=0))
         forces.append(force - force.mean())
     design, force = np.vstack(blocks), np.concatenate(forces)
     size = np.maximum(design.std(axis=0), 1e-300)
-    found = nnls(design / size, force)[0] / size
+    found = _not_negative(design / size, force) / size
     found[found * size < LEAST * force.std()] = 0.0
     mass, damping, spring, friction = found.tolist()
     unseen = ("mass",) if mass == 0.0 else ()
-    return Numbers(mass or UNSEEN * float(force.std()) / size[0], spring, damping, friction, unseen)
+    seen = mass or UNSEEN * float(force.std()) / size[0]
+    return Numbers(seen, spring, damping, friction, unseen, loads[0] if loaded else 0.0)
+
+
+def _not_negative(design: np.ndarray, force: np.ndarray) -> np.ndarray:
+    """Factors >= 0 of acceleration, velocity, place and direction, (4,), that explain a force best.
+
+    At one frequency acceleration is opposite to place: then only the larger of inertia and spring shows.
+    """
+    acceleration, place = design[:, 0], design[:, 2]
+    alike = abs(acceleration @ place) > ALIKE * force.size
+    fits = []
+    for used in ([1, 2, 3], [0, 1, 3]) if alike else ([0, 1, 2, 3],):
+        factors, left = nnls(design[:, used], force)
+        fits.append((left, np.bincount(used, factors, 4)))
+    return min(fits, key=lambda fit: fit[0])[1]
 
 
 def _parts(test: TestRecord) -> tuple[np.ndarray, np.ndarray]:
