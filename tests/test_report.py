@@ -400,9 +400,8 @@ def test_adequate_explanations_are_named(verdict, rivals, reason, words):
 def test_the_gain_says_over_what_the_excess_is(size, words, tmp_path):
     document, _ = fixture_diagnosis.write(tmp_path, "named")
     document["method"]["model_error"] = size
-    (tmp_path / diagnosis_result.JSON).write_text(json.dumps(document), encoding="utf-8")
+    text = page_of(tmp_path, document).text
     assert f"of the excess over {words} is gone (" in plain(report.sentence(tmp_path))
-    text = Page(report.write(tmp_path).read_text(encoding="utf-8")).text
     assert f"error on held-out tests, times the {words} " in f"{text} "
     assert f"of the excess over {words} (" in text
 
@@ -418,8 +417,7 @@ def test_the_gain_says_over_what_the_excess_is(size, words, tmp_path):
 def test_a_recommended_test_says_whether_it_distinguishes_reliably(distance, words, tmp_path):
     document, _ = fixture_diagnosis.write(tmp_path, "tied")
     document["next_test"]["distance"] = distance
-    text = page_of(tmp_path, document).text
-    assert words in text.replace("\u00a0", " ")
+    assert words in page_of(tmp_path, document).text
 
 
 OTHER_KINDS = {
@@ -450,9 +448,8 @@ def test_a_test_of_another_kind_is_told_as_what_to_do(kind, tmp_path):
     document, _ = fixture_diagnosis.write(tmp_path, "tied")
     test, sentence, order = OTHER_KINDS[kind]
     document["next_test"] = test | {key: document["next_test"][key] for key in ("separates", "distance")}
-    (tmp_path / diagnosis_result.JSON).write_text(json.dumps(document), encoding="utf-8")
+    text = page_of(tmp_path, document).text
     assert plain(report.sentence(tmp_path)).endswith(f"{sentence}.")
-    text = Page(report.write(tmp_path).read_text(encoding="utf-8")).text.replace("\u00a0", " ")
     assert order in text
     assert f'kind = "{test["kind"]}"' in text
 
@@ -514,11 +511,9 @@ def test_a_base_model_without_a_steady_response_has_no_excess(tmp_path):
     document["misfit"] |= {"chi2_base": None, "excess_base": None, "p_base": None}
     document["reason"] = {"code": "leaves-more", "p": 0.002}
     document["rivals"] = []
-    (tmp_path / diagnosis_result.JSON).write_text(json.dumps(document), encoding="utf-8")
-    assert "it leaves more than noise in the tests that show it, p = 0.002" in plain(
-        report.sentence(tmp_path)
+    assert (
+        "it leaves more than noise in the tests that show it, p = 0.002" in page_of(tmp_path, document).text
     )
-    assert report.write(tmp_path).exists()
 
 
 @pytest.mark.usefixtures("no_figures")

@@ -1,4 +1,4 @@
-"""The candidates, and how well each explains the tests."""
+"""The candidates: how well each explains the tests, and which are rivals of the best one."""
 
 from typing import Any
 
@@ -22,6 +22,9 @@ HEAD = (
     "score",
     "retention",
 )
+
+NO_RIVAL = "No other explanation comes close enough to the best one to be confused with it."
+NO_CAUSE = "No cause is named, so there are no rivals to it."
 
 
 def section(result: DiagnosisResult, draw: InlineFigures) -> Markup:
@@ -129,3 +132,22 @@ def _own(key: str, each: dict[str, Any]) -> str:
 def _name(each: dict[str, Any]) -> str:
     families = dict.fromkeys(EFFECTS[name].family for name in each["effects"] if name in EFFECTS)
     return phrases.combination(each["effects"]) + (f" ({', '.join(families)})" if families else "")
+
+
+def rivals(result: DiagnosisResult) -> Markup:
+    """Section with a table of the rivals."""
+    rows = [
+        [
+            phrases.combination(each["effects"]),
+            "; ".join(phrases.meaning(effect, result.document) for effect in each["effects"]),
+            formatting.number(each["gap"], 2),
+        ]
+        for each in result.document["rivals"]
+    ]
+    named = bool(result.document["causes"])
+    caption = "Other adequate explanations" if named else "Adequate explanations"
+    behind = f"penalised misfit less that of the {'cause' if named else 'best'}"
+    table = html.table(caption, ("explanation", "meaning", behind), rows, 2)
+    return html.section(
+        "rivals", "Rival explanations", table if rows else html.paragraph(NO_RIVAL if named else NO_CAUSE)
+    )

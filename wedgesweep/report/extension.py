@@ -1,13 +1,21 @@
 """The extended model: equations and parameters of what was added to the base model."""
 
+from types import ModuleType
 from typing import Any
 
-from wedgesweep import formatting
+from wedgesweep import equations, formatting
 from wedgesweep.diagnosis_result import DiagnosisResult
-from wedgesweep.effects import EFFECTS
-from wedgesweep.report import html, mathematics, phrases
+from wedgesweep.effects import EFFECTS, REGISTERED
+from wedgesweep.equations import notation
+from wedgesweep.equations.symbols import Meaning
+from wedgesweep.friction import LAWS
+from wedgesweep.friction.quantities import FRICTION
+from wedgesweep.quantity import Quantity
+from wedgesweep.report import html, phrases
 from wedgesweep.report.html import Markup
+from wedgesweep.systems import SYSTEMS
 
+A_RATE = "A prime (′) is a rate of change."
 HEAD = ("parameter", "value", "95 % interval")
 
 
@@ -22,9 +30,9 @@ def section(result: DiagnosisResult) -> Markup:
         _uncertain(result),
         html.details(
             "Equations of the base model",
-            mathematics.of_system(system),
+            _of_system(system),
             html.paragraph(f"Friction law: {law}."),
-            mathematics.of_law(law, system),
+            _of_law(law, system),
         ),
     )
 
@@ -48,7 +56,7 @@ def _effect(result: DiagnosisResult, effect: str) -> Markup:
     return html.join(
         [
             html.element("h3", f"{effect}: {phrases.meaning(effect, result.document)}"),
-            mathematics.of_effect(effect, phrases.system(result.document)),
+            _of_effect(effect, phrases.system(result.document)),
             html.table(f"Parameters of {effect}", HEAD, rows),
             html.paragraph(_place(result, effect)),
         ]
@@ -77,7 +85,7 @@ def _parameters(result: DiagnosisResult, effect: str) -> list[tuple[str, dict[st
 
 def _row(key: str, fitted: dict[str, Any]) -> list[str]:
     name, unit = phrases.split_key(key)
-    value, low, high = phrases.rounded(fitted) or (formatting.number(fitted["value"]), "", "")
+    value, low, high = phrases.rounded(fitted)
     interval = f"{low} to {high}" if low else formatting.NONE
     if "searched" in fitted:
         searched = " to ".join(map(formatting.number, fitted["searched"]))
@@ -107,3 +115,45 @@ def _fitted(name: str, numbers: dict[str, float]) -> list[list[str]]:
         [label, formatting.number(value, 4), formatting.number(std, 2)]
         for label, (value, std) in labelled.items()
     ]
+
+
+def _of_effect(name: str, system: str) -> Markup:
+    """Equations of an effect; nothing for one that this version does not know."""
+    return _equations(REGISTERED[name], EFFECTS[name].quantities, system) if name in REGISTERED else Markup()
+
+
+def _of_law(name: str, system: str) -> Markup:
+    """Equations of a friction law; nothing for one that this version does not know."""
+    return _equations(LAWS[name], FRICTION, system) if name in LAWS else Markup()
+
+
+def _of_system(name: str) -> Markup:
+    """Equations of motion of a base model."""
+    return _equations(SYSTEMS[name], (), name)
+
+
+def _equations(module: ModuleType, quantities: tuple[Quantity, ...], system: str) -> Markup:
+    stated = equations.of(module, quantities, system)
+    if not stated.lines:
+        return Markup()
+    lines = [Markup(notation.display(line)) for line in stated.lines]
+    parts = [
+        html.element("div", *lines, class_="equations", tabindex=0, role="region", aria_label="Equations")
+    ]
+    if stated.remark:
+        parts.append(html.paragraph(Markup(notation.prose(stated.remark))))
+    rates = A_RATE if any("'" in line for line in stated.lines) else ""
+    parts.append(html.details("What the symbols mean", _symbols(stated.meanings), html.paragraph(rates)))
+    return html.join(parts)
+
+
+def _symbols(meanings: dict[str, Meaning]) -> Markup:
+    rows = [
+        (html.element("dt", Markup(notation.symbol(name))), html.element("dd", _explained(meaning)))
+        for name, meaning in meanings.items()
+    ]
+    return html.element("dl", *(part for row in rows for part in row))
+
+
+def _explained(meaning: Meaning) -> str:
+    return f"{meaning.text} ({meaning.unit})" if meaning.unit else meaning.text

@@ -35,14 +35,13 @@ def _why_not(result: DiagnosisResult) -> str:
 
 def _summary(result: DiagnosisResult, gain: dict[str, Any]) -> str:
     before, after, floor = (formatting.number(gain[f"rmse_{kind}"]) for kind in ("base", "extended", "noise"))
-    gained, removed = (formatting.percent(gain[key]) for key in ("gain", "excess_removed"))
     allowed = phrases.allowed(result.document)
     alone = "noise alone leaves" if allowed == "noise" else f"{allowed} leave"
     claim = "" if result.document["causes"] else " This is the best attempt; the verdict names no cause."
     return (
         f"Cross-validation ({gain['scheme']}): the error on held-out tests goes from {before} to {after} "
-        f"times the {allowed}, a gain of {gained}; {alone} {floor}. The extension removes {removed} "
-        f"of the excess over {allowed} ({phrases.interval(gain)}).{claim}"
+        f"times the {allowed}, a gain of {formatting.percent(gain['gain'])}; {alone} {floor}. The extension "
+        f"removes {phrases.excess_removed(gain, result.document)}.{claim}"
     )
 
 

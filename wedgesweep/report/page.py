@@ -17,7 +17,6 @@ from wedgesweep.report import (
     missing_force,
     next_test,
     phrases,
-    rivals,
     sampled,
     summary,
 )
@@ -52,7 +51,7 @@ def render(result: DiagnosisResult, n_jobs: int = 1) -> str:
             held_out.section(result, draw),
             missing_force.section(result, draw),
             limits.section(result),
-            rivals.section(result),
+            candidates.rivals(result),
             next_test.section(result),
             method.section(result),
         ]

@@ -17,7 +17,7 @@ PARTS = {"transient": "window", "loop": "block", "mixed": "record part"}
 
 
 class Rounded(NamedTuple):
-    """A fitted value and the ends of its interval, as text."""
+    """A fitted value and the ends of its interval, as text; the ends are empty where it has none."""
 
     value: str
     low: str
@@ -56,10 +56,9 @@ def estimate(key: str, fitted: Mapping[str, Any]) -> str:
     name, unit = split_key(key)
     if fitted["value"] is None:
         return f"{name} not determined"
-    text = rounded(fitted)
-    if text is None:
-        return f"{name} {with_unit(number(fitted['value']), unit)}, no interval"
-    return f"{name} {with_unit(text.value, unit)}, {INTERVAL} {text.low} to {with_unit(text.high, unit)}"
+    value, low, high = rounded(fitted)
+    interval = f"{INTERVAL} {low} to {with_unit(high, unit)}" if low else "no interval"
+    return f"{name} {with_unit(value, unit)}, {interval}"
 
 
 def numbers(key: str, values: Sequence[float | None]) -> str:
@@ -71,15 +70,15 @@ def numbers(key: str, values: Sequence[float | None]) -> str:
 def compact(key: str, fitted: Mapping[str, Any]) -> str:
     """A fitted parameter with its interval in brackets, for a table whose head says so."""
     name, unit = split_key(key)
-    value, low, high = rounded(fitted) or (number(fitted["value"]), "", "")
+    value, low, high = rounded(fitted)
     return f"{name} {with_unit(value, unit)}" + (f" ({low} to {high})" if low else "")
 
 
-def rounded(fitted: Mapping[str, Any]) -> Rounded | None:
-    """A fitted parameter to two digits of the width of its interval; None if it has no interval."""
+def rounded(fitted: Mapping[str, Any]) -> Rounded:
+    """A fitted parameter to two digits of the width of its interval, if it has one."""
     ends = fitted["ci95"]
     if fitted["value"] is None or ends is None or None in ends:
-        return None
+        return Rounded(number(fitted["value"]), "", "")
     values = (fitted["value"], *ends)
     width, largest = abs(ends[1] - ends[0]), max(map(abs, values))
     if width == 0.0 or not SMALL <= largest < LARGE:
@@ -98,12 +97,13 @@ def allowed(document: Mapping[str, Any]) -> str:
     return "noise and model error" if document["method"].get("model_error") else "noise"
 
 
-def interval(gain: Mapping[str, Any]) -> str:
-    """The interval of the gain on held-out tests."""
-    if not gain["ci95"]:
-        return "too few tests for an interval"
-    low, high = gain["ci95"]
-    return f"{INTERVAL} {percent(low)} to {percent(high)}"
+def excess_removed(gain: Mapping[str, Any], document: Mapping[str, Any], verb: str = "") -> str:
+    """The gain on held-out tests with its interval; ``verb`` comes before the interval."""
+    between = "too few tests for an interval"
+    if gain["ci95"]:
+        low, high = gain["ci95"]
+        between = f"{INTERVAL} {percent(low)} to {percent(high)}"
+    return f"{percent(gain['excess_removed'])} of the excess over {allowed(document)}{verb} ({between})"
 
 
 def system(document: Mapping[str, Any]) -> str:

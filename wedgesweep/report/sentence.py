@@ -256,9 +256,7 @@ def _gain(result: DiagnosisResult) -> str:
     gain = result.gain
     if gain is None:
         return " (not checked on held-out tests)"
-    removed = formatting.percent(gain["excess_removed"])
-    excess = f"excess over {phrases.allowed(result.document)}"
-    return f", and on held-out tests {removed} of the {excess} is gone ({phrases.interval(gain)})"
+    return f", and on held-out tests {phrases.excess_removed(gain, result.document, ' is gone')}"
 
 
 def _next_test(result: DiagnosisResult, rivals: str = "") -> str:

@@ -44,7 +44,7 @@ def lead(result: DiagnosisResult) -> str:
 
 def table(result: DiagnosisResult) -> Markup:
     """Error before and after, gain on held-out tests, what nearly explains the tests, and the next step."""
-    models = ("base", "extended") if result.added else ("base",)
+    models = result.models
     head = ("", "before", "after" if result.document["causes"] else "best attempt")[: 1 + len(models)]
     allowed = phrases.allowed(result.document)
     rows: list[Sequence[object]] = [
@@ -55,8 +55,8 @@ def table(result: DiagnosisResult) -> Markup:
     if gain is not None:
         errors = [formatting.number(gain[f"rmse_{model}"]) for model in models]
         rows.append([f"error on held-out tests, times the {allowed}", *errors])
-        removed = f"{formatting.percent(gain['excess_removed'])} of the excess over {allowed} is gone"
-        rows.append(["gain on held-out tests", Spanning(f"{removed} ({phrases.interval(gain)})")])
+        removed = phrases.excess_removed(gain, result.document, " is gone")
+        rows.append(["gain on held-out tests", Spanning(removed)])
     if result.verdict == "none-of-mine":
         rows += [_nearly(level, result) for level in ladder.noteworthy(result)]
     step = next_test.NOTHING_TO_MEASURE[result.verdict]
