@@ -9,7 +9,7 @@ import numpy as np
 
 from tests.scaling import BENCH_SIZE
 from wedgesweep import config
-from wedgesweep.diagnose.next_test.offer import recommended
+from wedgesweep.diagnose.next_test.recommend import recommended
 from wedgesweep.diagnose.next_test.steady import sines
 from wedgesweep.diagnose.search import Search, base_fit, single_fit
 from wedgesweep.diagnose.steady import simulation

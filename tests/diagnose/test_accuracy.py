@@ -8,6 +8,7 @@ import pytest
 from tests.diagnose.synthetic import LAG, base_of, drawn, searched
 from wedgesweep.diagnose import accuracy, ladder
 from wedgesweep.diagnose.cross_validation import Predictor
+from wedgesweep.diagnose.explanation import Explanation
 from wedgesweep.diagnose.fit_parameters import Hypothesis
 from wedgesweep.diagnose.least_squares import minimise
 from wedgesweep.diagnose.model import Model
@@ -132,5 +133,5 @@ def test_explanations_on_copies_of_the_data_are_rated(monkeypatch):
     copies = [
         replace(fit, model=replace(fit.model, data=data)) for fit, data in zip(fits, copied, strict=True)
     ]
-    _, one = ladder.ladder(search, base, [search.explanation(fit) for fit in copies], Predictor(search.each))
+    _, one = ladder.ladder(search, base, [Explanation(fit) for fit in copies], Predictor(search.each))
     assert [each.effects for each in one.rated] == [("velocity_lag",), ("displacement_gain",)]

@@ -8,11 +8,12 @@ import pytest
 from tests.diagnose.synthetic import drawn
 from wedgesweep.diagnose import verdict
 from wedgesweep.diagnose.beyond_range import effects_at_range_end, followed_beyond
-from wedgesweep.diagnose.diagnosis import explain
+from wedgesweep.diagnose.explanation import Explanation
 from wedgesweep.diagnose.fit_parameters import Hypothesis
 from wedgesweep.diagnose.least_squares import minimise
 from wedgesweep.diagnose.result.estimates import parameters
-from wedgesweep.diagnose.search import Search, base_fit
+from wedgesweep.diagnose.search import Explained, Search, base_fit
+from wedgesweep.diagnose.stages import explain
 from wedgesweep.effects import EFFECTS
 from wedgesweep.natural_units import BENCH
 
@@ -69,9 +70,9 @@ def test_a_number_at_an_end_of_what_is_possible_is_not_followed():
     model = search.model("guide_friction")
     fit = minimise(model, model.evaluate(model.start(None, np.array([0.0]))), 0)
     assert effects_at_range_end(fit) == ()
-    same, explanations = followed_beyond(search, search.explanation(fit), [search.explanation(fit)])
-    assert same.wider == ()
-    assert [each.fit for each in explanations] == [fit]
+    known = followed_beyond(Explained(search, Explanation(fit), [Explanation(fit)], {}))
+    assert known.search.wider == ()
+    assert [each.fit for each in known.explanations] == [fit]
 
 
 def test_an_effect_that_explains_next_to_nothing_is_not_followed():
@@ -82,9 +83,9 @@ def test_an_effect_that_explains_next_to_nothing_is_not_followed():
     fit = minimise(model, model.evaluate(model.start(base.fit, np.array([2.0]))))
     assert effects_at_range_end(fit) == ("friction_level",)
     assert fit.chi2 < 0.9 * base.fit.chi2
-    explanation = search.explanation(fit)
-    assert followed_beyond(search, base, [explanation])[0].wider == ("friction_level",)
-    assert followed_beyond(search, explanation, [explanation])[0].wider == ()
+    explanation = Explanation(fit)
+    for worse, wider in ((base, ("friction_level",)), (explanation, ())):
+        assert followed_beyond(Explained(search, worse, [explanation], {})).search.wider == wider
 
 
 def test_a_logarithm_ends_at_either_end_of_its_range():

@@ -37,35 +37,23 @@ def test_a_sample_is_noise_about_the_fit(make):
     assert np.mean(squares) == pytest.approx(expected, abs=4.0 * np.sqrt(2.0 * expected / SAMPLES))
 
 
-def alone(effect):
-    """A search that tries one effect."""
-
+@pytest.mark.parametrize(
+    ("tried", "again", "strong"), [("velocity_lag", 1.0, 0.0), ("cubic_stiffness", 0.0, np.inf)]
+)
+def test_a_cause_that_is_found_again_is_strong_however_small(tried, again, strong, monkeypatch):
     def explain(search):
-        search, base, *_ = base_fit(search)
-        return base, [single_fit(search, effect, base.fit).explanation]
+        known = base_fit(search)
+        return known.joined([single_fit(known.search, tried, known.base.fit).explanation])
 
-    return explain
-
-
-def test_a_cause_that_is_found_again_is_strong_however_small(monkeypatch):
     monkeypatch.setattr(calibration, "SAMPLES", 3)
+    monkeypatch.setattr(calibration, "explain", explain)
     messages = []
     search, base, (lag,) = searched(drawn(LAG), "velocity_lag")
-    search = replace(search, progress=messages.append)
-    found = calibrate(search, base, lag, alone("velocity_lag"), ("velocity_lag",))
-    assert found.found == 1.0
-    assert found.thresholds.strong == 0.0
+    found = calibrate(replace(search, progress=messages.append), base, lag)
+    assert (found.found, found.thresholds.strong) == (again, strong)
     # A number costs more than noise gives.
     assert found.least_gain < verdict.GAP
     assert messages[-1] == "calibration, velocity_lag: 3 of 3"
-
-
-def test_a_cause_that_is_not_found_again_stays_weak(monkeypatch):
-    monkeypatch.setattr(calibration, "SAMPLES", 3)
-    search, base, (lag,) = searched(drawn(LAG), "velocity_lag")
-    found = calibrate(search, base, lag, alone("cubic_stiffness"), ("cubic_stiffness",))
-    assert found.found == 0.0
-    assert found.thresholds.strong == np.inf
 
 
 def test_samples_without_a_response_of_the_base_model_do_not_count():

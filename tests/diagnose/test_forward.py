@@ -2,6 +2,7 @@
 
 from tests.diagnose.synthetic import LAG, drawn, searched
 from wedgesweep.diagnose.cross_validation import Predictor
+from wedgesweep.diagnose.explanation import Explanation
 from wedgesweep.diagnose.forward import forward_selection
 from wedgesweep.diagnose.ladder import ladder
 from wedgesweep.diagnose.least_squares import minimise
@@ -17,7 +18,7 @@ def levels_after(hidden, pair):
     known = {each.effects[0]: each.fit for each in singles}
     model = search.model(*pair)
     start = model.start(base.fit, [known[name].x[0] for name in pair])
-    both = search.explanation(minimise(model, model.evaluate(start)))
+    both = Explanation(minimise(model, model.evaluate(start)))
     predict = Predictor(search.each)
     before = ladder(search, base, [*singles, both], predict)
     return before, forward_selection(search, singles, before, predict)

@@ -5,9 +5,9 @@ import pytest
 
 from tests.diagnose.synthetic import MODEL, drawn
 from wedgesweep.diagnose import verdict
-from wedgesweep.diagnose.diagnosis import explain
 from wedgesweep.diagnose.result.estimates import parameters
 from wedgesweep.diagnose.search import Search
+from wedgesweep.diagnose.stages import explain
 
 # Frequencies (Hz), and amplitudes (m) of base accelerations of 0.9 to 2.4 m/s2: all break away.
 FREQUENCIES = np.array([8.0, 12.0, 16.0, 20.0, 24.0, 30.0])

@@ -6,9 +6,10 @@ import pytest
 from tests.diagnose.synthetic import MODEL, drawn, searched
 from wedgesweep import config
 from wedgesweep.diagnose import score_test, verdict
-from wedgesweep.diagnose.diagnosis import explain, refit_cause
+from wedgesweep.diagnose.diagnosis import refit_cause
 from wedgesweep.diagnose.result.estimates import parameters
 from wedgesweep.diagnose.search import Search, base_fit
+from wedgesweep.diagnose.stages import explain
 from wedgesweep.effects import go_together
 
 NAME = "lift_off"

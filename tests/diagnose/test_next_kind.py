@@ -12,15 +12,15 @@ from tests.diagnose.test_loops import CELLS, RATE, diagnosed
 from wedgesweep import toml
 from wedgesweep.config import parse
 from wedgesweep.diagnose import verdict
-from wedgesweep.diagnose.diagnosis import data_of, explain
+from wedgesweep.diagnose.diagnosis import data_of
 from wedgesweep.diagnose.fit_parameters import Hypothesis
 from wedgesweep.diagnose.least_squares import minimise
 from wedgesweep.diagnose.model import Fit, Model
 from wedgesweep.diagnose.next_test.designs import offered
-from wedgesweep.diagnose.next_test.offer import SEPARATED
-from wedgesweep.diagnose.next_test.recommend import recommend
+from wedgesweep.diagnose.next_test.recommend import SEPARATED, recommend
 from wedgesweep.diagnose.next_test.transients import releases, sweeps
 from wedgesweep.diagnose.search import Search
+from wedgesweep.diagnose.stages import explain
 from wedgesweep.effects import merge
 from wedgesweep.measured import read
 from wedgesweep.solvers import imposed_motion
@@ -98,8 +98,8 @@ def test_a_rig_that_drops_its_mass_is_asked_to_drop_it(tmp_path):
     test = recommend([explained(data, DAMPED), explained(data, RUBBED)])
     assert (test.kind, test.motion) == ("transient", "release")
     assert 0.3 <= test.numbers["start_mm"] / 2.0 <= 3.0
-    assert test.distance >= SEPARATED
-    assert set(test.separates) == {*DAMPED, *RUBBED}
+    assert test.closest.separated
+    assert set(test.closest.names) == {*DAMPED, *RUBBED}
 
 
 def test_a_distance_is_the_excess_that_a_fit_would_leave(tmp_path):
@@ -124,10 +124,10 @@ def test_a_steady_measurement_may_be_told_another_kind():
     data = replace(drawn(), model=model, law="coulomb", uncertain=FRICTION)
     fits = [explained(data, {name: each}, std=np.array([1e-3, 0.3])) for name, each in RIVALS.items()]
     steady = steady_test(fits)
-    assert steady is None or steady.distance < SEPARATED
+    assert steady is None or not steady.closest.separated
     found = recommend(fits)
     assert found.kind == "loop"
-    assert found.distance >= SEPARATED
+    assert found.closest.separated
     easy = [explained(replace(data, uncertain={}), each) for each in (DAMPED, RUBBED)]
     assert recommend(easy).kind == "steady"
 
@@ -153,7 +153,7 @@ def test_a_heavier_rig_gets_the_same_advice(tmp_path):
     light, heavy = found
     assert heavy.kind == light.kind == "loop"
     assert heavy.numbers == pytest.approx(light.numbers, rel=1e-6)
-    assert heavy.distance == pytest.approx(light.distance, rel=0.02)
+    assert heavy.closest.distance == pytest.approx(light.closest.distance, rel=0.02)
 
 
 @pytest.mark.acceptance

@@ -10,7 +10,7 @@ from wedgesweep import config
 from wedgesweep.diagnose.fit_parameters import Hypothesis
 from wedgesweep.diagnose.model import Fit, Model
 from wedgesweep.diagnose.next_test.designs import offered
-from wedgesweep.diagnose.next_test.offer import SEPARATED, choice
+from wedgesweep.diagnose.next_test.recommend import SEPARATED, choice
 from wedgesweep.diagnose.next_test.steady import ACCELERATIONS, FREQUENCIES
 from wedgesweep.diagnose.steady import simulation
 from wedgesweep.solvers.periodic import at_rest
@@ -48,9 +48,9 @@ def suspects():
 def test_the_next_test_makes_every_suspect_move(suspects):
     """Next to breakaway Coulomb predictions are as far apart as one likes, and as hard to fit."""
     test = steady_test(suspects)
-    assert test.distance >= SEPARATED
-    assert set(test.separates) == {"friction_level", "bolster_stiffness"}
-    assert test.pairs == ((test.separates, test.distance),)
+    assert test.closest.separated
+    assert set(test.closest.names) == {"friction_level", "bolster_stiffness"}
+    assert test.pairs == (test.closest,)
     for fit in suspects:
         assert gain(fit, test, 0.8) > 0.5 * gain(fit, test, 1.0) > 1e-3
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tests.diagnose.synthetic import AMPLITUDES, FREQUENCIES, drawn, searched
-from wedgesweep.diagnose import diagnosis, verdict
+from wedgesweep.diagnose import stages, verdict
 from wedgesweep.diagnose.parameter_constancy import _p_constant, parameter_constancy
 from wedgesweep.diagnose.projector import Projector
 from wedgesweep.diagnose.search import Search
@@ -48,7 +48,7 @@ def test_a_number_that_changes_in_the_session_is_found_long_before_noise_is_exce
 
 def test_what_changes_in_the_session_is_not_named():
     data = worn(1.10, 1.114)
-    _, base, found, _ = diagnosis.explain(Search.of(data, ("friction_level",)))
+    _, base, found, _ = stages.explain(Search.of(data, ("friction_level",)))
     assert base.fit.excess > verdict.STRONG
     assert verdict.decide(base, found, verdict.DEFAULT).verdict == "none-of-mine"
 

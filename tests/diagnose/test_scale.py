@@ -8,7 +8,7 @@ import pytest
 from tests.diagnose.synthetic import MODEL, drawn, steady_test
 from tests.scaling import BENCH_SIZE, FROUDE, HEAVIER, SIZES
 from wedgesweep import config
-from wedgesweep.diagnose import diagnosis, verdict
+from wedgesweep.diagnose import stages, verdict
 from wedgesweep.diagnose.search import Search
 from wedgesweep.diagnose.steady import simulation
 from wedgesweep.diagnose.steady.from_measurement import harmonic_data
@@ -36,7 +36,7 @@ class Answer:
         with monkeypatch.context() as patch:
             patch.setattr(simulation, "respond", counted)
             data = drawn(effects, size=size)
-            explained = diagnosis.explain(Search.of(data, candidates))
+            explained = stages.explain(Search.of(data, candidates))
             self.base, self.explanations = explained.base, explained.explanations
             self.next = steady_test([each.fit for each in self.explanations[:3]])
         self.finding = verdict.decide(self.base, self.explanations, verdict.DEFAULT)
@@ -65,7 +65,7 @@ def test_verdict_causes_numbers_and_next_test_are_those_of_the_bench(effects, si
     assert rig.finding.best.fit.chi2 == pytest.approx(bench.finding.best.fit.chi2, rel=1e-4)
     found, expected = (each.numbers(each.finding.best) for each in (rig, bench))
     assert found[cause] == pytest.approx(expected[cause], rel=1e-4)
-    assert rig.next.separates == bench.next.separates
+    assert rig.next.closest.names == bench.next.closest.names
     mine, its = bench.next.numbers, rig.next.numbers
     assert its["frequency_hz"] * size.time == pytest.approx(mine["frequency_hz"])
     assert its["amplitude_mm"] / size.length == pytest.approx(mine["amplitude_mm"])

@@ -10,10 +10,11 @@ from tests.diagnose.synthetic import drawn
 from tests.diagnose.test_oscillator_data import FREQUENCY, C, K, M, model
 from wedgesweep import config
 from wedgesweep.diagnose import verdict
-from wedgesweep.diagnose.diagnosis import diagnose, explain
+from wedgesweep.diagnose.diagnosis import diagnose
 from wedgesweep.diagnose.fit_parameters import Hypothesis
 from wedgesweep.diagnose.model import Model
 from wedgesweep.diagnose.search import Search
+from wedgesweep.diagnose.stages import explain
 from wedgesweep.diagnose.steady.from_measurement import harmonic_data
 from wedgesweep.diagnose.steady.harmonic_data import stated
 from wedgesweep.diagnose.steady.stated_input import distorted as with_harmonic

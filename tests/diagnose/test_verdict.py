@@ -13,7 +13,7 @@ from wedgesweep.diagnose.parameter_constancy import Constancy
 from wedgesweep.diagnose.verdict import Thresholds, decide, on_held_out_tests, p_where_it_shows
 from wedgesweep.diagnosis_result import Reason
 
-DOF, PENALTY, MODEL_ERROR = 700, 12.6, 0.02
+DOF, MODEL_ERROR = 700, 0.02
 
 
 def explained(
@@ -65,7 +65,7 @@ def explained(
 
 
 def priced(fit, constant=1.0):
-    found = Explanation(fit, PENALTY)
+    found = Explanation(fit)
     vars(found)["constancy"] = Constancy(constant, None)
     return found
 
@@ -355,36 +355,38 @@ def test_calibrated_thresholds_replace_the_general_ones():
     assert verdict_of(base, best, thresholds=Thresholds(least_gain=1000.0)).verdict != "named"
 
 
-def test_what_was_best_only_for_its_error_gives_way(monkeypatch):
+@pytest.fixture
+def refit(monkeypatch):
+    """Refits of a cause that change fits as told: the tight one, and the one that goes on."""
+
+    def refit(base, finding, found, tight=lambda fit: fit, further=None):
+        monkeypatch.setattr(diagnosis, "tight_refit", tight)
+        monkeypatch.setattr(diagnosis, "minimise", lambda model, start: further)
+        monkeypatch.setattr(diagnosis, "from_other_nuisances", lambda fit: fit)
+        monkeypatch.setattr(diagnosis, "profile_likelihood", lambda fit, each: fit)
+        monkeypatch.setattr(diagnosis, "Explanation", priced)
+        search = SimpleNamespace(each=map, tried=lambda stage, fit, change: change(fit))
+        return diagnosis.refit_cause(search, base, finding, found, verdict.DEFAULT)
+
+    return refit
+
+
+def test_what_was_best_only_for_its_error_gives_way(refit):
     base, first, second = explained(5000.0), explained(705.0, "stribeck"), explained(709.0, "preload")
     worse = explained(900.0, "stribeck").fit
-    monkeypatch.setattr(diagnosis, "tight_refit", lambda fit: worse if fit is first.fit else fit)
-    monkeypatch.setattr(diagnosis, "from_other_nuisances", lambda fit: fit)
-    monkeypatch.setattr(diagnosis, "profile_likelihood", lambda fit, each: fit)
-    search = SimpleNamespace(
-        progress=lambda step: None, explanation=priced, each=map, tried=lambda stage, fit, refit: refit(fit)
-    )
     tied = verdict_of(base, first, second)
     assert tied.verdict == "tied"
-    found, order = diagnosis.refit_cause(search, base, tied, [first, second], verdict.DEFAULT)
+    found, order = refit(base, tied, [first, second], lambda fit: worse if fit is first.fit else fit)
     assert (found.verdict, found.best.effects) == ("named", ("preload",))
     assert [each.fit.chi2 for each in order] == [709.0, 900.0]
 
 
-def test_a_rival_whose_fit_had_not_ended_is_followed_before_the_gap_to_it_counts(monkeypatch):
+def test_a_rival_whose_fit_had_not_ended_is_followed_before_the_gap_to_it_counts(refit):
     base, first, second = explained(5000.0), explained(705.0, "stribeck"), explained(730.0, "preload")
     second.fit.converged = False
-    further = explained(706.0, "preload").fit
-    monkeypatch.setattr(diagnosis, "minimise", lambda model, start: further)
-    for name in ("tight_refit", "from_other_nuisances"):
-        monkeypatch.setattr(diagnosis, name, lambda fit: fit)
-    monkeypatch.setattr(diagnosis, "profile_likelihood", lambda fit, each: fit)
-    search = SimpleNamespace(
-        progress=lambda step: None, explanation=priced, each=map, tried=lambda stage, fit, refit: refit(fit)
-    )
     early = verdict_of(base, first, second)
     assert early.verdict != "tied"
-    found, _ = diagnosis.refit_cause(search, base, early, [first, second], verdict.DEFAULT)
+    found, _ = refit(base, early, [first, second], further=explained(706.0, "preload").fit)
     assert found.verdict == "tied"
 
 

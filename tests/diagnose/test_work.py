@@ -7,7 +7,7 @@ from itertools import combinations
 import pytest
 
 from tests.diagnose.synthetic import drawn
-from wedgesweep.diagnose import diagnosis, pairs, work
+from wedgesweep.diagnose import pairs, stages, work
 from wedgesweep.diagnose.search import Search, base_fit, single_fits
 from wedgesweep.diagnose.work import Budget
 
@@ -59,7 +59,7 @@ def test_a_simulated_case_counts_with_its_periods():
 
 def test_without_work_left_singles_are_fitted_and_the_rest_is_told():
     search = replace(Search.of(drawn(PAIR), CANDIDATES), budget=Budget(0.0))
-    found = diagnosis.explain(search)
+    found = stages.explain(search)
     assert {each.effects for each in found.explanations} == {(name,) for name in CANDIDATES}
     left_out = {each.what: each.left_out for each in search.budget.untried}
     assert left_out == {pairs.PAIRS: 6}

@@ -5,40 +5,38 @@ lie outside: bristles that are shorter, a drag that is larger. A fit then ends a
 what it leaves would be taken for a cause that no effect describes.
 """
 
-from collections.abc import Sequence
 from dataclasses import replace
 
 from wedgesweep.diagnose.changes import SLIGHT
-from wedgesweep.diagnose.explanation import Explanation, best_of_each, penalised
+from wedgesweep.diagnose.explanation import NOTABLE, Explanation, penalised
 from wedgesweep.diagnose.least_squares import minimise
 from wedgesweep.diagnose.model import Fit
-from wedgesweep.diagnose.search import LEADING, NOTABLE, Search
+from wedgesweep.diagnose.search import LEADING, Explained
 
 # A number is at an end of its range if it is closer to it than this share of the range's width.
 AT_END = 1e-3
 
 
-def followed_beyond(
-    search: Search, base: Explanation, found: Sequence[Explanation]
-) -> tuple[Search, list[Explanation]]:
+def followed_beyond(known: Explained) -> Explained:
     """The best explanations at an end of their range fitted again beyond it.
 
-    Returns the search, which knows the ranges that were left, and all explanations, best first. An effect
-    that explains next to nothing ends where it is absent, as an ever stiffer column does; it stays there.
+    The search knows the ranges that were left. An effect that explains next to nothing ends where it is
+    absent, as an ever stiffer column does; it stays there.
     """
+    search, base, found, _ = known
     leading = [
         each
         for each in sorted(found, key=penalised)[:LEADING]
         if each.fit.chi2 < NOTABLE * base.fit.chi2 and effects_at_range_end(each.fit)
     ]
     better = [
-        search.explanation(fit)
+        Explanation(fit)
         for each, fit in zip(leading, search.each(lambda each: _followed(each.fit), leading), strict=True)
         if fit.chi2 < each.fit.chi2 - SLIGHT
     ]
     wider = {name for each in better for name in each.fit.model.hypothesis.wider}
     search = replace(search, wider=tuple(sorted({*search.wider, *wider})))
-    return search, best_of_each([*better, *found], penalised)
+    return known._replace(search=search).joined(better)
 
 
 def effects_at_range_end(fit: Fit) -> tuple[str, ...]:

@@ -4,7 +4,6 @@ Data are drawn from the fitted base model: how much does the best of all candida
 missing? And from the best explanation: how often does the search find it again?
 """
 
-from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,13 +12,11 @@ from wedgesweep.diagnose import verdict
 from wedgesweep.diagnose.explanation import Explanation
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.search import Search
+from wedgesweep.diagnose.stages import explain
 
 SAMPLES = 20
 # Share of samples in which the search must find the truth again for a cause to be named.
 SAFE = 0.95
-
-# Runs a whole search; returns the base model and all explanations.
-Explain = Callable[[Search], tuple[Explanation, Sequence[Explanation]]]
 
 
 @dataclass(frozen=True)
@@ -52,37 +49,16 @@ class Calibration:
         return {"draws": SAMPLES, "least_gain": self.least_gain, "found_again": self.found}
 
 
-def calibrate(
-    search: Search,
-    base: Explanation,
-    best: Explanation | None,
-    explain: Explain,
-    candidates: Sequence[str],
-    seed: int = 0,
-) -> Calibration:
-    """Repeat the search on samples from the base model, and from the best explanation if there is one.
-
-    Parameters
-    ----------
-    search : Search
-        The search on the measured data, whose threads and reports of progress are used.
-    base, best : Explanation
-        The fits that samples are drawn from.
-    explain : callable
-        The whole search.
-    candidates : sequence of str
-        Effects to try on each sample.
-    seed : int
-        Seed of the random numbers.
-    """
-    rng = np.random.default_rng(seed)
+def calibrate(search: Search, base: Explanation, best: Explanation | None) -> Calibration:
+    """Repeat a search on samples from the base model, and from the best explanation if there is one."""
+    rng, candidates = np.random.default_rng(0), (*search.effects, *search.undetected)
 
     def outcomes(truth: Fit, label: str) -> list[tuple[Explanation, list[Explanation]]]:
         results = []
         for number in range(SAMPLES):
             sample = truth.model.data.bootstrap_sample(truth.evaluation, rng)
-            start, found = explain(Search.of(sample, candidates, search.threads))
-            results.append((start, verdict.ranked(found)))
+            known = explain(Search.of(sample, candidates, search.threads))
+            results.append((known.base, verdict.ranked(known.explanations)))
             search.progress(f"calibration, {label}: {number + 1} of {SAMPLES}")
         return results
 

@@ -84,10 +84,6 @@ class Starts(NamedTuple):
         layout, kept = self.layout.subset(rows)
         return Starts(tuple(self.parts[i].of(some) for i, some in kept.items()), layout)
 
-    def where(self, chosen: np.ndarray, other: "Starts") -> "Starts":
-        pairs = zip(self.layout.rows, self.parts, other.parts, strict=True)
-        return self._replace(parts=tuple(mine.where(chosen[rows], its) for rows, mine, its in pairs))
-
 
 class Responses(NamedTuple):
     """What was simulated of each part, and the number m of residuals of its tests."""
@@ -105,7 +101,6 @@ class Concatenation(FitData):
     """Tests of several parts."""
 
     kind = "mixed"
-    measured_tests = _of_parts("measured_tests", sum)
     observations = _of_parts("observations", np.concatenate)
     dof = _of_parts("dof", np.concatenate)
     power = _of_parts("power", np.concatenate)
@@ -297,9 +292,6 @@ class Concatenation(FitData):
 
     def needs_alignment(self, effects: Iterable[str]) -> bool:
         return any(self._each("needs_alignment", tuple(effects)))
-
-    def insensitive(self, evaluation: Evaluation) -> np.ndarray:
-        return np.concatenate(self._each("insensitive", each=self._evaluations(evaluation)))
 
     def never_steady(self, scenario: Scenario) -> np.ndarray:
         return np.concatenate(self._each("never_steady", each=self._scenario(scenario)))

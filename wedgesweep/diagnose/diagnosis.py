@@ -18,13 +18,12 @@ from wedgesweep.diagnose.ladder import Level, ladder, rough_ladder
 from wedgesweep.diagnose.least_squares import from_other_nuisances, minimise, tight_refit
 from wedgesweep.diagnose.loop.from_measurement import loop_data
 from wedgesweep.diagnose.model import Fit
-from wedgesweep.diagnose.next_test.offer import NextTest
-from wedgesweep.diagnose.next_test.recommend import recommend
+from wedgesweep.diagnose.next_test.recommend import NextTest, recommend
 from wedgesweep.diagnose.profile_likelihood import profile_likelihood
 from wedgesweep.diagnose.record_by_record import ByRecord
 from wedgesweep.diagnose.score_test import Score
 from wedgesweep.diagnose.search import OTHER_NUISANCES, Explained, Search, base_fit, quiet, single_fits
-from wedgesweep.diagnose.stages import PAIRS, REFINEMENT, explain, taken
+from wedgesweep.diagnose.stages import PAIRS, REFINEMENT, taken
 from wedgesweep.diagnose.steady.from_measurement import harmonic_data
 from wedgesweep.diagnose.transient.from_measurement import transient_data
 from wedgesweep.diagnose.verdict import Finding, Thresholds
@@ -249,10 +248,7 @@ def diagnose(
 def _calibrated(course: Course) -> Diagnosis:
     """The diagnosis with thresholds from simulations of its tests, which are not part of the budget."""
     found, search = course.found, course.search
-    effects, best = (*search.effects, *search.undetected), found.decided.best
-    result = work.uncounted(
-        lambda: calibrate(search, found.base, best, lambda sample: explain(sample)[1:3], effects)
-    ).result
+    result = work.uncounted(lambda: calibrate(search, found.base, found.decided.best)).result
     thresholds = verdict.thresholds_for(search.data, result.thresholds)
     decided = verdict.decide(found.base, found.explanations, thresholds)
     return replace(found, decided=decided, thresholds=thresholds, calibration=result.as_dict())
@@ -266,9 +262,14 @@ def _with_intervals(course: Course) -> Diagnosis:
 
 
 def _held_out(course: Course) -> Diagnosis:
+    """The diagnosis with the gain on held-out tests, if there is anything to gain, and tests to hold out."""
     found = course.found
-    decided, gain = on_held_out_tests(course.search, found.base, found.decided, course.predict)
-    return replace(found, decided=decided, gain=gain)
+    base, decided = found.base, found.decided
+    if decided.best is None or found.data.tests < 2:
+        return found
+    gain = cross_validate(base.fit, decided.best.fit, course.predict)
+    decided = verdict.on_held_out_tests(decided, base, gain.excess_removed, gain.interval)
+    return replace(found, decided=decided, gain=None if decided.best is None else gain)
 
 
 def _rated(course: Course) -> Diagnosis:
@@ -291,7 +292,7 @@ def _with_leading_effect(search: Search, found: Diagnosis, predict: Predictor) -
     fit = minimise(rated.fit.model.on(data), data.compared_again(rated.fit.evaluation))
     fit = profile_likelihood(tight_refit(fit), search.each)
     again = strict.compared_again(fit.evaluation)
-    best = search.explanation(replace(fit, model=fit.model.on(strict), evaluation=again))
+    best = Explanation(replace(fit, model=fit.model.on(strict), evaluation=again))
     others = [each for each in found.explanations if each.effects != best.effects]
     gain = cross_validate(found.base.fit, best.fit, predict)
     decided = replace(found.decided, best=best)
@@ -301,7 +302,7 @@ def _with_leading_effect(search: Search, found: Diagnosis, predict: Predictor) -
 
 def _with_more_effects(course: Course) -> Diagnosis:
     found = course.found
-    if found.finding.verdict not in ABSTAINING or len(found.ladder) < forward.LEVELS:
+    if found.finding.verdict not in ABSTAINING:
         return found
     levels = forward.forward_selection(course.search, found.explanations, found.ladder, course.predict)
     return replace(found, ladder=levels)
@@ -385,7 +386,7 @@ def refit_cause(
         # Without a cause there is no interval to report.
         if finding.cause is not None or search.budget.left > 0.0:
             fit = profile_likelihood(fit, search.each)
-        done.append(search.explanation(fit))
+        done.append(Explanation(fit))
         found = [done[-1] if each is finding.best else each for each in found]
         found.sort(key=penalised)
         finding = verdict.decide(base, found, thresholds)
@@ -396,20 +397,7 @@ def _continued(search: Search, found: Sequence[Explanation], thresholds: Thresho
     """The best explanation and those close to it, followed further where their fits had not converged."""
     limit = min(map(penalised, found)) + FOLLOWED_GAPS * thresholds.gap
     waiting = [each for each in found if penalised(each) < limit and not each.fit.converged]
-    return search.each(
-        lambda each: search.explanation(minimise(each.fit.model, each.fit.evaluation)), waiting
-    )
-
-
-def on_held_out_tests(
-    search: Search, base: Explanation, finding: Finding, predict: Predictor
-) -> tuple[Finding, Gain | None]:
-    """The finding after cross-validation, and the gain on held-out tests; None without an explanation."""
-    if finding.best is None or search.data.tests < 2:
-        return finding, None
-    gain = cross_validate(base.fit, finding.best.fit, predict)
-    finding = verdict.on_held_out_tests(finding, base, gain.excess_removed, gain.interval)
-    return finding, gain if finding.best is not None else None
+    return search.each(lambda each: Explanation(minimise(each.fit.model, each.fit.evaluation)), waiting)
 
 
 def _undecided(finding: Finding, explanations: Sequence[Explanation], thresholds: Thresholds) -> list[Fit]:

@@ -16,17 +16,11 @@ class WarmStart(Protocol):
     def of(self, rows: Any) -> Any:
         """The warm start of some tests."""
 
-    def where(self, chosen: np.ndarray, other: Any) -> Any:
-        """A warm start with the rows ``chosen`` (T,) from another."""
-
 
 class NoStart(NamedTuple):
     """The warm start of simulations that do not depend on earlier ones."""
 
     def of(self, rows: Any) -> "NoStart":
-        return self
-
-    def where(self, chosen: np.ndarray, other: Any) -> "NoStart":
         return self
 
 

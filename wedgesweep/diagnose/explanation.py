@@ -14,6 +14,9 @@ from wedgesweep.diagnose.parameter_constancy import Constancy, parameter_constan
 # Each parameter costs ln n + PENALTY in chi-squared, n being the number of observations. PENALTY is such that
 # clean data keep the base model though the best of some twenty candidates is compared with it.
 PENALTY = 6.0
+# A model explains notably more than another if it leaves less than this share of the other's chi-squared, or
+# of its error on tests left out: a smaller gain is no reason to prefer one with more numbers.
+NOTABLE = 0.9
 # Least p-value of an adequate model, and of one that is possible at all.
 ADEQUATE, POSSIBLE = 0.01, 1e-3
 
@@ -25,10 +28,9 @@ def parameter_penalty(data: FitData) -> float:
 
 @dataclass(frozen=True)
 class Explanation:
-    """A fit of a hypothesis, and the penalty for each of its parameters."""
+    """A fit of a hypothesis, with what its parameters cost."""
 
     fit: Fit
-    parameter_penalty: float
 
     @property
     def effects(self) -> tuple[str, ...]:
@@ -50,7 +52,7 @@ class Explanation:
     @property
     def penalised(self) -> float:
         """Chi-squared plus the penalty for all parameters."""
-        return self.fit.chi2 + self.parameter_penalty * self.fit.model.size
+        return self.fit.chi2 + parameter_penalty(self.fit.model.data) * self.fit.model.size
 
 
 # Key by which explanations are ranked.

@@ -98,11 +98,6 @@ class FitData(Protocol):
         return [fit]
 
     @property
-    def measured_tests(self) -> int:
-        """Number of tests as they were measured, of which T may be windows or blocks."""
-        return self.tests
-
-    @property
     @abstractmethod
     def observations(self) -> np.ndarray:
         """Real numbers that each test contributes, (T,)."""
@@ -219,7 +214,7 @@ class FitData(Protocol):
 
     @property
     def tests_of_records(self) -> list[tuple[str, np.ndarray]]:
-        """Name of each record, and rows of its tests."""
+        """Name of each record, and rows of its tests, which may be windows or blocks of it."""
         return [(name, np.array([row])) for row, name in enumerate(self.names)]
 
     def candidates(self, effects: Sequence[str]) -> tuple[str, ...]:
@@ -256,10 +251,6 @@ class FitData(Protocol):
     def needs_alignment(self, effects: Iterable[str]) -> bool:
         """Whether responses under these effects depend on what ``aligned_to`` tells of the records' start."""
         return False
-
-    def insensitive(self, evaluation: Evaluation) -> np.ndarray:
-        """Whether (T,) the simulated mass sticks, unlike the measured one: small steps change nothing."""
-        return np.zeros(self.tests, bool)
 
     def never_steady(self, scenario: Scenario) -> np.ndarray:
         """Whether (T,) the response depends on how long the rig had run, which the records do not tell."""

@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from wedgesweep.diagnose.cross_validation import Predictor
-from wedgesweep.diagnose.explanation import Explanation
+from wedgesweep.diagnose.explanation import NOTABLE, Explanation
 from wedgesweep.diagnose.ladder import Level, Rated, by_accuracy, level_of, rated_where_it_ended
 from wedgesweep.diagnose.least_squares import minimise
 from wedgesweep.diagnose.model import Fit
@@ -18,10 +18,6 @@ from wedgesweep.diagnose.search import Search
 from wedgesweep.effects import go_together
 
 NAME = "forward selection"
-# An effect is added if it lowers the error on tests left out by this share.
-GAINED = 0.1
-# Levels of a ladder with a base model, one effect and two.
-LEVELS = 3
 # Effects beside each other, at most: with more, none of a rig's few tests would be left to judge them.
 MOST = 5
 # Iterations of the first fit of each candidate, and candidates that are followed to the end.
@@ -33,9 +29,12 @@ SHARE = 1.0 / 6.0
 def forward_selection(
     search: Search, explanations: Sequence[Explanation], levels: Sequence[Level], predict: Predictor
 ) -> tuple[Level, ...]:
-    """The levels of the ladder, and one more for each effect that is added to its best pair."""
+    """The levels of the ladder, and one more for each effect that is added to its best pair.
+
+    None is added where no pair was fitted, or where it predicts hardly better than one effect.
+    """
     found = list(levels)
-    if not _gained(*found[-2:]):
+    if len(found[-1].best.effects) < 2 or not _gained(*found[-2:]):
         return tuple(found)
     singles = {each.effects[0]: each.fit for each in explanations if len(each.effects) == 1}
     search.budget.grant(SHARE * search.budget.total)
@@ -51,7 +50,7 @@ def forward_selection(
 def _gained(before: Level, after: Level) -> bool:
     """Whether a level predicts tests left out clearly better than the one with an effect less."""
     was, now = before.best.held_out, after.best.held_out
-    return was is not None and now is not None and now < (1.0 - GAINED) * was
+    return was is not None and now is not None and now < NOTABLE * was
 
 
 def _with_one_more(search: Search, best: Rated, singles: Mapping[str, Fit]) -> list[Rated]:
@@ -61,7 +60,7 @@ def _with_one_more(search: Search, best: Rated, singles: Mapping[str, Fit]) -> l
         lambda effect: _begun(search, best, singles[effect]), others, NAME, lambda e: (*best.effects, e)
     )
     leading = sorted(begun, key=lambda fit: fit.chi2)[:FOLLOWED]
-    found = search.each(lambda fit: rated_where_it_ended(search.explanation(fit)), leading)
+    found = search.each(lambda fit: rated_where_it_ended(Explanation(fit)), leading)
     return sorted(found, key=by_accuracy)
 
 

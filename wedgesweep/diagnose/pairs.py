@@ -116,7 +116,7 @@ def _fit_combinations(job: PairSearch, combinations: Sequence[Combination], what
     fits = _continued(search, promising(fits)[:ENTERING], ROUNDS[2], further)
     completed = SEVERAL if search.budget.left <= 0.0 else LEADING
     found = search.each(lambda fit: _complete(job, fit), promising(fits)[:completed])
-    return refit_best(search, found)
+    return [*refit_best(search, found), *found]
 
 
 def _continued(search: Search, fits: Sequence[Fit], iterations: int, what: str) -> list[Fit]:
@@ -199,21 +199,20 @@ def _complete(job: PairSearch, subset: Fit) -> Explanation:
     known = [job.base, *(job.singles[effect].fit for effect in subset.effects)]
     starts = [replace(model.start(fit, subset.x[: model.size]), x=subset.x) for fit in known]
     start = replace(starts[0], nuisance=model.best_nuisances(starts))
-    found = job.search.explanation(minimise(model, model.evaluate(start)))
+    found = Explanation(minimise(model, model.evaluate(start)))
     job.search.finished.append(found)
     return found
 
 
-def components(search: Search, found: Sequence[Explanation]) -> list[Explanation]:
-    """All explanations, and either effect of the best pair by itself, from its parameters in the pair.
+def components(search: Search, pair: Fit) -> list[Explanation]:
+    """Either effect of a pair by itself, from its parameters in the pair.
 
     A pair whose other effect does nothing reveals a minimum that the single fit had missed.
     """
-    pair = min(found, key=penalised).fit
 
     def alone(effect: str) -> Explanation:
         model = search.model(effect)
         start = model.start(pair, model.hypothesis.at(pair.values))
-        return search.explanation(minimise(model, model.evaluate(start)))
+        return Explanation(minimise(model, model.evaluate(start)))
 
-    return [*found, *search.each(alone, pair.effects)]
+    return search.each(alone, pair.effects)

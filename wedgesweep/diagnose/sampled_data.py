@@ -98,10 +98,6 @@ class SampledData(FitData):
     def tests(self) -> int:
         return len(self.names)
 
-    @property
-    def measured_tests(self) -> int:
-        return np.unique(self.numbers).size
-
     def subset(self, rows: np.ndarray) -> Self:
         part = self.chosen_tests(np.arange(self.tests)[rows])
         if self.resampled is None:

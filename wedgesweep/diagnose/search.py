@@ -17,14 +17,13 @@ import numpy as np
 from wedgesweep.ablation import left_out
 from wedgesweep.diagnose import work
 from wedgesweep.diagnose.changes import SLIGHT, Best, Change, HasBest
-from wedgesweep.diagnose.evaluation import Evaluation, Point
-from wedgesweep.diagnose.explanation import POSSIBLE, Explanation, best_of_each, parameter_penalty, penalised
+from wedgesweep.diagnose.evaluation import Evaluation
+from wedgesweep.diagnose.explanation import POSSIBLE, Explanation, best_of_each, penalised
 from wedgesweep.diagnose.fit_data import FitData
 from wedgesweep.diagnose.fit_parameters import Hypothesis
 from wedgesweep.diagnose.least_squares import BRIEF, from_other_nuisances, minimise
 from wedgesweep.diagnose.model import ROUGH, TOLERANCE, Fit, Model
 from wedgesweep.diagnose.progress import Step
-from wedgesweep.diagnose.trimmed_refit import refit_without_influential_tests
 
 
 class Round(NamedTuple):
@@ -46,14 +45,12 @@ CUT_OFF = 100.0
 FAR = 100.0
 # Number of best single effects, of best pairs and of best explanations that are looked at again.
 LEADING = 8
-# A fit explains something, or is far better, if it leaves less than this share of another one's chi-squared.
-NOTABLE = 0.9
 # Work (see work.py) that a search may spend for each test, the least number of tests that it counts, and the
 # share that pairs get even if unknown amplitudes made single effects expensive.
 WORK_PER_TEST, FEWEST_COUNTED, PAIRS_SHARE = 1e5, 12, 1.0 / 3.0
 
-# Names of what may help a fit, in the order in which it is tried.
-OTHER_NUISANCES, INFLUENTIAL = "other nuisances", "influential tests left out"
+# Name of what may help a fit.
+OTHER_NUISANCES = "other nuisances"
 # Evaluations of each effect over the range of its parameters, beside the base model.
 Scans = Mapping[str, Sequence[Evaluation]]
 Known = TypeVar("Known", bound=HasBest)
@@ -97,7 +94,7 @@ class Search:
         """A search for some effects in some data."""
         detected = data.candidates(effects)
         undetected = tuple(effect for effect in effects if effect not in detected)
-        budget = work.Budget(WORK_PER_TEST * max(data.measured_tests, FEWEST_COUNTED))
+        budget = work.Budget(WORK_PER_TEST * max(len(data.tests_of_records), FEWEST_COUNTED))
         return cls(data, detected, undetected, threads, progress, budget)
 
     def tried(self, name: str, known: Known, change: Callable[[Known], Known]) -> Known:
@@ -109,28 +106,12 @@ class Search:
         work.told(Change(name, before, known.best, work.done() - begun))
         return known
 
-    def uses(self, name: str, here: bool) -> bool:
-        """Whether a way of fitting that is asked for here is taken, unless it is left out; that is told."""
-        used = here and name not in self.without
-        if used:
-            work.told(Change(name, Best((), 0.0), Best((), 0.0), 0.0))
-        return used
-
     def model(self, *effects: str, tolerance: float = TOLERANCE) -> Model:
         """The model with some effects; no effects: the base model."""
         known = self.data.known
         fixed = tuple((name, value) for name, (value, _) in known.items() if name.split(".")[0] in effects)
         wider = tuple(name for name in effects if name in self.wider)
         return Model(self.data, Hypothesis(effects, fixed, self.data.units, wider), tolerance)
-
-    def explanation(self, fit: Fit) -> Explanation:
-        return Explanation(fit, parameter_penalty(self.data))
-
-    def nuisances_searched(self, model: Model, points: Sequence[Point]) -> list[Evaluation]:
-        """Evaluations of points, with nuisance parameters without a prior where they fit best."""
-        if self.uses("search of nuisances", here=True):
-            return self.data.search_nuisances(model, points)
-        return model.evaluate_all(points)
 
     def each(self, function: Callable[[Any], Any], items: Iterable[Any], what: str = "") -> list[Any]:
         """Results of a function for all items, in their order; ``what``: stage whose progress is reported."""
@@ -209,6 +190,10 @@ class Explained(NamedTuple):
         best = min([self.base, *self.explanations], key=penalised)
         return Best(best.effects, best.penalised)
 
+    def joined(self, more: Iterable[Explanation]) -> "Explained":
+        """The same with more explanations; of each set of effects the best one stays."""
+        return self._replace(explanations=best_of_each([*more, *self.explanations], penalised))
+
 
 class SingleFit(NamedTuple):
     """Best fit of one effect, the scan over its range, and the data, aligned where the effect asks for it."""
@@ -227,16 +212,14 @@ def base_fit(search: Search) -> Explained:
     model = search.model()
     start = model.start(None, np.zeros(0))
     points = [replace(start, x=x) for x in model.uncertain_starts()]
-    if not search.uses("starts of uncertain numbers", len(points) > 1):
-        points = points[:1]
-    evaluations = search.nuisances_searched(model, points)
+    evaluations = search.data.search_nuisances(model, points)
     fit = _halved(model, evaluations, BASE_SCHEDULE, each=search.each)
     if len(model.uncertain) and fit.p < POSSIBLE:
         fit = search.tried(
             "nuisances held", fit, lambda fit: min(fit, _from_held(search, model, evaluations), key=_chi2)
         )
-    fit = _aligned(search, search.tried(INFLUENTIAL, fit, refit_without_influential_tests))
-    return Explained(replace(search, data=fit.model.data), search.explanation(fit), [], {})
+    fit = _aligned(search, fit)
+    return Explained(replace(search, data=fit.model.data), Explanation(fit), [], {})
 
 
 def _from_held(search: Search, model: Model, evaluations: Sequence[Evaluation]) -> Fit:
@@ -262,7 +245,7 @@ def refit_base(known: Explained) -> Explained:
     if fit.chi2 >= base.fit.chi2 - SLIGHT:
         return known
     fit = _aligned(search, fit)
-    return known._replace(search=replace(search, data=fit.model.data), base=search.explanation(fit))
+    return known._replace(search=replace(search, data=fit.model.data), base=Explanation(fit))
 
 
 def _aligned(search: Search, fit: Fit) -> Fit:
@@ -307,26 +290,22 @@ def single_fit(search: Search, effect: str, base: Fit) -> SingleFit:
     """Fit one effect from starting points over its range, beside the fitted base model."""
     data, model, rough = search.data, search.model(effect), search.model(effect, tolerance=ROUGH)
     points = model.hypothesis.starts()
-    scan = search.nuisances_searched(rough, [model.start(base, x) for x in points])
+    scan = data.search_nuisances(rough, [model.start(base, x) for x in points])
     evaluations = best_per_value(scan)
     implausible = data.implausible(base.point) or bool(base.implausible)
-    own_numbers = bool(model.hypothesis.switches and data.uncertain)
-    apart = implausible or _brings_alignment(data, effect) or model.hypothesis.switches
-    if search.uses("starts as stated", apart):
+    if implausible or _brings_alignment(data, effect) or model.hypothesis.switches:
         # Fitted without the effect, the base model's own parameters are, or may be, far from the truth.
-        fresh = search.nuisances_searched(rough, [model.start(None, x) for x in points])
-        if search.uses("step of own numbers", own_numbers):
+        fresh = data.search_nuisances(rough, [model.start(None, x) for x in points])
+        if model.hypothesis.switches and data.uncertain:
             fresh = [_with_own_numbers(rough, each) for each in fresh]
         evaluations = evaluations + fresh
-        if search.uses("fits beside stated numbers", implausible):
+        if implausible:
             evaluations = evaluations + beside_stated(model, fresh)
-    short = search.uses("short rounds", base.p >= POSSIBLE)
-    schedule = SHORT_SCHEDULE if short else SCHEDULE
-    drops = search.uses("hopeless fits end", here=True)
-    fit = best_of(model, evaluations, schedule, CUT_OFF * base.chi2 if drops else inf)
+    schedule = SHORT_SCHEDULE if base.p >= POSSIBLE else SCHEDULE
+    fit = best_of(model, evaluations, schedule, CUT_OFF * base.chi2)
     if _brings_alignment(data, effect):
         fit = _aligned(search, fit)
-    return SingleFit(search.explanation(fit), scan, fit.model.data)
+    return SingleFit(Explanation(fit), scan, fit.model.data)
 
 
 def _with_own_numbers(model: Model, start: Evaluation) -> Evaluation:
@@ -355,20 +334,20 @@ def contenders(search: Search, found: Sequence[Explanation]) -> list[Explanation
 
 
 def refit_best(search: Search, found: Sequence[Explanation]) -> list[Explanation]:
-    """Explanations, best first; impossible ones among the best are refitted without influential tests.
+    """Impossible ones of the best explanations, refitted with other nuisance parameters.
 
-    Other nuisance parameters are tried where they might make an explanation the best one.
+    These are tried where they might make an explanation the best one.
     """
     leading = contenders(search, found)
-    best = [each for each in leading if each.fit.p < POSSIBLE]
+
+    def promising(each: Explanation) -> bool:
+        most = each.fit.model.data.gained_by_other_nuisances(each.fit.evaluation)
+        return each.fit.p < POSSIBLE and each.penalised - most < leading[0].penalised
 
     def refitted(each: Explanation) -> Explanation:
-        most = each.fit.model.data.gained_by_other_nuisances(each.fit.evaluation)
-        promising = each.penalised - most < leading[0].penalised
-        fit = search.tried(OTHER_NUISANCES, each.fit, from_other_nuisances) if promising else each.fit
-        return search.explanation(search.tried(INFLUENTIAL, fit, refit_without_influential_tests))
+        return Explanation(search.tried(OTHER_NUISANCES, each.fit, from_other_nuisances))
 
-    return best_of_each([*search.each(refitted, best), *found], penalised)
+    return search.each(refitted, filter(promising, leading))
 
 
 def best_of(

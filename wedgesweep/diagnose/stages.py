@@ -9,11 +9,11 @@ from typing import NamedTuple
 
 from wedgesweep.diagnose import verdict
 from wedgesweep.diagnose.beyond_range import followed_beyond
-from wedgesweep.diagnose.explanation import Explanation, best_of_each, penalised
+from wedgesweep.diagnose.explanation import NOTABLE, Explanation, penalised
+from wedgesweep.diagnose.fit_data import FitData
 from wedgesweep.diagnose.least_squares import BRIEF, minimise
 from wedgesweep.diagnose.pairs import components, fit_pairs
 from wedgesweep.diagnose.search import (
-    NOTABLE,
     PAIRS_SHARE,
     Explained,
     Search,
@@ -53,30 +53,21 @@ def _base_model_again(known: Explained) -> Explained:
     handed_on = known.search.data.shares_nuisances and not verdict.none_adequate(found)
     if better.base.fit.chi2 >= NOTABLE * known.base.fit.chi2 or handed_on:
         return better
-    again = single_fits(better)
-    return again._replace(explanations=best_of_each([*found, *again.explanations], penalised))
+    return single_fits(better).joined(found)
 
 
-def _beyond_range(known: Explained) -> Explained:
-    search, found = followed_beyond(known.search, known.base, known.explanations)
-    return known._replace(search=search, explanations=found)
+def _best_refitted(known: Explained) -> Explained:
+    return known.joined(refit_best(known.search, known.explanations))
 
 
-def _pairs(known: Explained) -> list[Explanation]:
+def _pairs(known: Explained) -> Explained:
     search, base, found, scans = known
     search.budget.grant(PAIRS_SHARE * search.budget.total)
-    return [*found, *fit_pairs(search, base.fit, found, scans)]
+    return known.joined(fit_pairs(search, base.fit, found, scans))
 
 
-def _found(
-    function: Callable[[Search, Sequence[Explanation]], list[Explanation]],
-) -> Callable[[Explained], Explained]:
-    """A stage that changes explanations only."""
-    return _explanations(lambda known: function(known.search, known.explanations))
-
-
-def _explanations(function: Callable[[Explained], list[Explanation]]) -> Callable[[Explained], Explained]:
-    return lambda known: known._replace(explanations=best_of_each(function(known), penalised))
+def _components(known: Explained) -> Explained:
+    return known.joined(components(known.search, known.explanations[0].fit))
 
 
 def _with_renewed_covariance(explained: Explained) -> Explained:
@@ -92,24 +83,23 @@ def _with_renewed_covariance(explained: Explained) -> Explained:
     if data is search.data:
         return explained
     search = replace(search, data=data)
-    found = sorted((_compared_again(search, each) for each in found), key=penalised)
+    found = sorted((_compared_again(data, each) for each in found), key=penalised)
     leading = contenders(search, found)
     others = [each for each in found if not any(each is one for one in leading)]
-    again = [_compared_again(search, base), *leading]
-    base, *leading = search.each(lambda each: _refitted(search, each), again)
+    again = [_compared_again(data, base), *leading]
+    base, *leading = search.each(_refitted, again)
     found = sorted([*leading, *others], key=penalised)
     scans = {effect: [data.compared_again(each) for each in scan] for effect, scan in scans.items()}
     return Explained(search, base, found, scans)
 
 
-def _compared_again(search: Search, each: Explanation) -> Explanation:
-    model = each.fit.model.on(search.data)
-    evaluation = search.data.compared_again(each.fit.evaluation)
-    return search.explanation(replace(each.fit, model=model, evaluation=evaluation))
+def _compared_again(data: FitData, each: Explanation) -> Explanation:
+    model, evaluation = each.fit.model.on(data), data.compared_again(each.fit.evaluation)
+    return Explanation(replace(each.fit, model=model, evaluation=evaluation))
 
 
-def _refitted(search: Search, each: Explanation) -> Explanation:
-    return search.explanation(minimise(each.fit.model, each.fit.evaluation, BRIEF))
+def _refitted(each: Explanation) -> Explanation:
+    return Explanation(minimise(each.fit.model, each.fit.evaluation, BRIEF))
 
 
 def _inadequate(known: Explained) -> bool:
@@ -131,10 +121,10 @@ REFINEMENT = (
     Stage("covariance renewed", _with_renewed_covariance),
 )
 PAIRS = (
-    Stage("best refitted", _found(refit_best), lambda known: verdict.none_adequate([known.base])),
-    Stage("beyond range", _beyond_range, _inadequate),
-    Stage("best pairs", _explanations(_pairs), _for_pairs),
-    Stage("components", _found(components), _pair_leads),
+    Stage("best refitted", _best_refitted, lambda known: verdict.none_adequate([known.base])),
+    Stage("beyond range", followed_beyond, _inadequate),
+    Stage("best pairs", _pairs, _for_pairs),
+    Stage("components", _components, _pair_leads),
     Stage("base model at last", refit_base),
     Stage("covariance renewed again", _with_renewed_covariance),
 )

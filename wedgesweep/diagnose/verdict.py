@@ -3,7 +3,8 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from math import inf
-from typing import TYPE_CHECKING, Any, NamedTuple
+from operator import itemgetter
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy.special import chdtrc
@@ -196,7 +197,7 @@ def _weigh(
     base: Explanation, best: Explanation, order: Sequence[Explanation], thresholds: Thresholds
 ) -> Finding:
     """The finding on the best possible explanation, by its fit, its rivals and the evidence for it."""
-    against, numbers, p = _against(base, best)
+    p, against, numbers = _against(base, best)
     met = best.fit.model.data.model_error and best.fit.p >= ADEQUATE
     # With a weak excess, noise decides in part which tests hold most of it: then p says less.
     if p < POSSIBLE and base.fit.excess >= STRONG and not met:
@@ -284,23 +285,20 @@ def _adequate_alternatives(order: Sequence[Explanation], best: Explanation) -> t
     return tuple(each for each in others if each.fit.p >= ADEQUATE)
 
 
-class Against(NamedTuple):
-    """The strongest evidence against an explanation, with its numbers and p-value."""
+def _against(base: Explanation, best: Explanation) -> tuple[float, Reason, Mapping[str, Any]]:
+    """The strongest evidence against an explanation: its p-value, the reason, and the numbers of that.
 
-    reason: Reason
-    numbers: Mapping[str, Any]
-    p: float
-
-
-def _against(base: Explanation, best: Explanation) -> Against:
-    """The smallest p-value: over all tests, over those that hold most of the excess, or of constancy."""
-    found = [Against(Reason.UNEXPLAINED, {}, best.fit.p)]
+    The smallest p-value over all tests, over those that hold most of the excess, and of constancy.
+    """
     shows = p_where_it_shows(base.fit, best.fit)
-    found.append(Against(Reason.LEAVES_MORE, {"p": shows}, shows))
+    found: list[tuple[float, Reason, Mapping[str, Any]]] = [
+        (best.fit.p, Reason.UNEXPLAINED, {}),
+        (shows, Reason.LEAVES_MORE, {"p": shows}),
+    ]
     if best.fit.p >= POSSIBLE:
         p, parameter = best.constancy
-        found.append(Against(Reason.VARIES, {"p": p, "parameter": parameter}, p))
-    return min(found, key=lambda each: each.p)
+        found.append((p, Reason.VARIES, {"p": p, "parameter": parameter}))
+    return min(found, key=itemgetter(0))
 
 
 def p_where_it_shows(base: Fit, fit: Fit) -> float:
@@ -352,7 +350,7 @@ def on_held_out_tests(
     if tolerable(base.fit):
         return _nothing_missing(base)
     rival_adequate = any(each.p_value >= ADEQUATE for each in finding.rivals)
-    if _against(base, cause).p < ADEQUATE and not rival_adequate:
+    if _against(base, cause)[0] < ADEQUATE and not rival_adequate:
         return replace(doubted, verdict=_abstention(base))
     return replace(doubted, verdict=CONSISTENT if finding.verdict == NAMED else INSUFFICIENT)
 

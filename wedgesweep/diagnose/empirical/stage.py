@@ -20,18 +20,16 @@ from wedgesweep.diagnose.empirical.named_force import at_nodes, half_step
 from wedgesweep.diagnose.empirical.nearest import Nearest, nearest
 from wedgesweep.diagnose.empirical.smooth_fit import SmoothFit, fit
 from wedgesweep.diagnose.evaluation import Evaluation
+from wedgesweep.diagnose.explanation import NOTABLE
 from wedgesweep.diagnose.fit_data import Motion
 from wedgesweep.diagnose.fit_parameters import Values
 from wedgesweep.diagnose.ladder import Level, Rated
 from wedgesweep.diagnose.model import Fit, Model
 from wedgesweep.effects.empirical_force import FORCES, NAME, TABLE
 
-# The force is offered if its error on tests left out is at most this share of that of the best named
-# explanation: a smaller gain is no reason to prefer a table to a name.
-OFFERED = 0.9
-# It is fitted again with the weights of the accuracy reached, at most this many times, as long as that gets
-# smaller by this factor: far from the tests a force is found step by step.
-REFITS, SMALLER = 8, 0.9
+# The force is fitted again with the weights of the accuracy reached, at most this many times, as long as that
+# gets notably smaller: far from the tests a force is found step by step.
+REFITS = 8
 
 
 @dataclass(frozen=True)
@@ -54,7 +52,7 @@ class EmpiricalForce:
     def offered(self) -> bool:
         """Whether it predicts tests that were left out better than the best named explanation."""
         named = self.named.held_out
-        return self.held_out < inf and named is not None and self.held_out < OFFERED * named
+        return self.held_out < inf and named is not None and self.held_out < NOTABLE * named
 
     @property
     def next_place(self) -> tuple[float, float]:
@@ -105,7 +103,7 @@ def empirical_force(base: Fit, levels: Sequence[Level], each: Each) -> Empirical
     found = fit(*start, rows)
     own = _accuracy(found)
     for _ in range(REFITS):
-        if own == 0.0 or own > SMALLER * size:
+        if own == 0.0 or own > NOTABLE * size:
             break
         size, weighted = own, data.with_model_error(own)
         again = weighted.compared_again(found.evaluation)

@@ -27,7 +27,7 @@ RELEASED, SWEPT, LOW, HIGH = 10.0, 20.0, 0.5, 2.0
 FINE = 32
 
 
-def releases(best: Fit, known: Sensors) -> Design | None:
+def releases(best: Fit, known: Sensors, measured: TransientData | None = None) -> Design | None:
     """Releases at rest from displacements of several sizes; None without a spring, where the mass stays."""
     if known.model.system == "oscillator" and known.model.oscillator["spring"] == 0.0:
         return None
@@ -37,7 +37,7 @@ def releases(best: Fit, known: Sensors) -> Design | None:
     return Design(TRANSIENT, RELEASE, _data(best, known, tests), numbers, (SIZES.size, 1))
 
 
-def sweeps(best: Fit, known: Sensors) -> Design:
+def sweeps(best: Fit, known: Sensors, measured: TransientData | None = None) -> Design:
     """Sweeps through the resonance from rest, of constant amplitude."""
     unit, natural = known.model.amplitude_unit, known.omega / (2.0 * pi)
     low, high, duration = LOW * natural, HIGH * natural, SWEPT / natural

@@ -16,7 +16,7 @@ from wedgesweep.diagnose.diagnosis import Diagnosis, excluded_effects
 from wedgesweep.diagnose.explanation import ADEQUATE, POSSIBLE, Explanation, parameter_penalty
 from wedgesweep.diagnose.ladder import Level, Rated
 from wedgesweep.diagnose.model import Fit
-from wedgesweep.diagnose.next_test.offer import SEPARATED, NextTest
+from wedgesweep.diagnose.next_test.recommend import SEPARATED, NextTest
 from wedgesweep.diagnose.record_by_record import ByRecord
 from wedgesweep.diagnose.result import missing_force
 from wedgesweep.diagnose.result.estimates import finite, parameters, uncertain
@@ -36,16 +36,16 @@ def document(found: Diagnosis) -> dict[str, Any]:
     hidden = _not_testable(found)
     content = {
         "verdict": finding.verdict,
-        "reason": {"code": finding.reason.code, **_finite(finding.numbers)},
+        "reason": {"code": finding.reason.code, **finding.numbers},
         "causes": _causes(finding.cause),
         "rivals": [
-            {"effects": list(each.effects), "gap": finite(each.penalised - best.penalised)}
+            {"effects": list(each.effects), "gap": each.penalised - best.penalised}
             for each in finding.alternatives
         ],
         "misfit": _misfit(found, best),
         "gain": _gain(found.gain),
         "detectable": {
-            score.effect: {score.key: finite(score.detectable)} for score in found.scores if score.testable
+            score.effect: {score.key: score.detectable} for score in found.scores if score.testable
         },
         "not_testable": hidden,
         "excluded": excluded_effects(found.measurement),
@@ -76,11 +76,7 @@ def document(found: Diagnosis) -> dict[str, Any]:
         "method": _method(found),
         "candidates": _candidates(found, hidden),
     }
-    return rotation.written(content) if data.model.turns else content
-
-
-def _finite(numbers: Mapping[str, Any]) -> dict[str, Any]:
-    return {key: finite(value) if isinstance(value, float) else value for key, value in numbers.items()}
+    return finite(rotation.written(content) if data.model.turns else content)
 
 
 def _ended(found: Diagnosis) -> dict[str, Any] | None:
@@ -140,15 +136,15 @@ def _causes(each: Explanation | None) -> list[dict[str, Any]]:
 def _misfit(found: Diagnosis, best: Explanation) -> dict[str, Any]:
     base = found.base.fit
     return {
-        "chi2_base": finite(base.chi2),
-        "chi2_extended": finite(best.fit.chi2),
+        "chi2_base": base.chi2,
+        "chi2_extended": best.fit.chi2,
         "dof": base.dof,
         "dof_extended": best.fit.dof,
-        "excess_base": finite(base.excess),
-        "p_base": finite(base.p),
+        "excess_base": base.excess,
+        "p_base": base.p,
         "implausible": list(base.implausible),
-        "p_extended": finite(best.fit.p),
-        "p_where_it_shows": finite(p_where_it_shows(base, best.fit)),
+        "p_extended": best.fit.p,
+        "p_where_it_shows": p_where_it_shows(base, best.fit),
         **_constancy(best),
         "tests": _tests(found),
     }
@@ -157,7 +153,7 @@ def _misfit(found: Diagnosis, best: Explanation) -> dict[str, Any]:
 def _constancy(best: Explanation) -> dict[str, Any]:
     """Whether parameters are the same in all tests; null where the misfit alone rules the fit out."""
     p, parameter = best.constancy if best.fit.p >= POSSIBLE else (None, None)
-    return {"p_constant": finite(p), "least_constant": parameter}
+    return {"p_constant": p, "least_constant": parameter}
 
 
 def _tests(found: Diagnosis) -> list[dict[str, Any]]:
@@ -165,7 +161,7 @@ def _tests(found: Diagnosis) -> list[dict[str, Any]]:
     misfits = base.evaluation.chi2_by_test, best.evaluation.chi2_by_test
     rows = zip(data.names, data.rows(base, best), *misfits, data.dof, strict=True)
     return [
-        {"name": name, **_finite(row), "q_base": finite(before), "q_extended": finite(after), "dof": int(dof)}
+        {"name": name, **row, "q_base": before, "q_extended": after, "dof": int(dof)}
         for name, row, before, after, dof in rows
     ]
 
@@ -179,19 +175,19 @@ def _gain(gain: Gain | None) -> dict[str, Any]:
     schemes = dict.fromkeys(each.scheme for each in gain.held_out)
     return {
         "scheme": " and ".join(f"leave-one-{scheme}-out" for scheme in schemes),
-        "rmse_base": finite(base),
-        "rmse_extended": finite(extended),
-        "rmse_noise": finite(noise),
-        "gain": finite(1.0 - extended / base),
-        "excess_removed": finite(gain.excess_removed),
+        "rmse_base": base,
+        "rmse_extended": extended,
+        "rmse_noise": noise,
+        "gain": 1.0 - extended / base,
+        "excess_removed": gain.excess_removed,
         "ci95": gain.interval,
         "held_out": [
             {
                 "test": each.test,
                 "scheme": each.scheme,
-                "rmse_base": finite(each.rmse(each.base)),
-                "rmse_extended": finite(each.rmse(each.extended)),
-                "rmse_noise": finite(each.rmse(each.noise)),
+                "rmse_base": each.rmse(each.base),
+                "rmse_extended": each.rmse(each.extended),
+                "rmse_noise": each.rmse(each.noise),
             }
             for each in gain.held_out
         ],
@@ -205,8 +201,8 @@ def _next_test(test: NextTest | None) -> dict[str, Any] | None:
         "kind": test.kind,
         **({} if test.motion is None else {"motion": test.motion}),
         **test.numbers,
-        "separates": list(test.separates),
-        "distance": test.distance,
+        "separates": list(test.closest.names),
+        "distance": test.closest.distance,
         "pairs": [{"separates": list(each.names), "distance": each.distance} for each in test.pairs],
     }
 
@@ -215,20 +211,20 @@ def _level(level: Level) -> dict[str, Any]:
     """The most accurate explanation of a number of effects, with its rivals; 0.01 is 1 % of the response."""
     return {
         **_rated(level.best),
-        "accuracy_held_out": finite(level.best.held_out),
-        "distinct": finite(level.distinct),
+        "accuracy_held_out": level.best.held_out,
+        "distinct": level.distinct,
         "rivals": [_rated(each) for each in level.rivals[:RIVALS]],
     }
 
 
 def _rated(each: Rated) -> dict[str, Any]:
-    return {"effects": list(each.effects), "accuracy": finite(each.accuracy)}
+    return {"effects": list(each.effects), "accuracy": each.accuracy}
 
 
 def _of_records(each: ByRecord) -> dict[str, Any]:
     """An explanation whose numbers differ from record to record."""
     records = [{"record": name, "parameters": _by_name(parameters(fit))} for name, fit in each.fits]
-    return {"effects": list(each.effects), "accuracy": finite(each.accuracy), "records": records}
+    return {"effects": list(each.effects), "accuracy": each.accuracy, "records": records}
 
 
 def _by_name(numbers: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
@@ -241,11 +237,11 @@ def _method(found: Diagnosis) -> dict[str, Any]:
         "penalty_per_parameter": parameter_penalty(found.data),
         "gap": found.thresholds.gap,
         "enough_distance": SEPARATED,
-        "strong_excess": finite(found.thresholds.strong),
+        "strong_excess": found.thresholds.strong,
         "adequate_p": ADEQUATE,
         "model_error": found.data.model_error,
         "larger_model_error": LARGER * found.data.model_error,
-        "noise_floor": finite(found.data.noise_floor),
+        "noise_floor": found.data.noise_floor,
         "least_gain": found.thresholds.least_gain,
         "dof": found.base.fit.dof,
         **found.data.method,
@@ -264,14 +260,14 @@ def _candidates(found: Diagnosis, hidden: Sequence[str]) -> list[dict[str, Any]]
         rows.append(
             {
                 "effects": list(each.effects),
-                "q": finite(each.fit.chi2),
+                "q": each.fit.chi2,
                 "dof": each.fit.dof,
-                "p": finite(each.fit.p),
-                "penalised": finite(each.penalised),
-                "accuracy": finite(accuracies.get(each.effects)),
+                "p": each.fit.p,
+                "penalised": each.penalised,
+                "accuracy": accuracies.get(each.effects),
                 "parameters": _by_name(numbers),
-                "score": None if score is None else finite(score.t2),
-                "retention": None if score is None else finite(score.retention),
+                "score": None if score is None else score.t2,
+                "retention": None if score is None else score.retention,
                 "status": status,
             }
         )

@@ -1,5 +1,6 @@
 """Fitted parameters with their 95 % intervals."""
 
+from collections.abc import Mapping
 from math import exp, isfinite, log, sqrt
 from typing import Any
 
@@ -32,7 +33,7 @@ def parameters(fit: Fit) -> dict[str, dict[str, dict[str, Any]]]:
         searched, units = quantity.searched(hypothesis.units), hypothesis.units
         limits = quantity.wider(units) if name in hypothesis.wider else searched
         ends = interval(quantity, value, TWO_SIDED * std, limits)
-        found: dict[str, Any] = {"value": finite(value), "ci95": [finite(end) for end in ends]}
+        found: dict[str, Any] = {"value": value, "ci95": list(ends)}
         if not (quantity.angle or searched[0] <= value <= searched[1]):
             found["searched"] = list(searched)
         return found
@@ -85,6 +86,10 @@ def uncertain_values(fit: Fit) -> dict[str, dict[str, float]]:
     return fit.model.uncertain.by_key(fit.x[fit.model.size :])
 
 
-def finite(value: Any) -> float | None:
-    """A number as JSON takes it."""
-    return float(value) if value is not None and isfinite(value) else None
+def finite(value: Any) -> Any:
+    """A value as JSON takes it: numbers that are not finite are null, at any depth."""
+    if isinstance(value, Mapping):
+        return {key: finite(each) for key, each in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [finite(each) for each in value]
+    return None if isinstance(value, float) and not isfinite(value) else value

@@ -8,7 +8,6 @@ import xarray as xr
 from wedgesweep.config import force_table
 from wedgesweep.diagnose.diagnosis import Diagnosis
 from wedgesweep.diagnose.empirical.stage import EmpiricalForce
-from wedgesweep.diagnose.result.estimates import finite
 from wedgesweep.diagnose.result.extended_config import written
 from wedgesweep.diagnosis_result import FORCE_CONFIG, FORCE_TABLE
 from wedgesweep.effects.empirical_force import NAME, PLACES, SPEEDS
@@ -32,12 +31,12 @@ def document(force: EmpiricalForce | None) -> dict[str, Any] | None:
     }
     return {
         "offered": force.offered,
-        "accuracy": finite(force.accuracy),
-        "accuracy_held_out": finite(force.held_out),
+        "accuracy": force.accuracy,
+        "accuracy_held_out": force.held_out,
         "named": {
             "effects": list(named.effects),
-            "accuracy": finite(named.accuracy),
-            "accuracy_held_out": finite(named.held_out),
+            "accuracy": named.accuracy,
+            "accuracy_held_out": named.held_out,
         },
         "degrees_of_freedom": force.fit.freedom,
         **(offered if force.offered else {}),

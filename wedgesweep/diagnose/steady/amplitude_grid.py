@@ -7,12 +7,15 @@ from math import log
 import numpy as np
 
 from wedgesweep.diagnose.evaluation import Evaluation, Point
+from wedgesweep.diagnose.fit_data import FitData
 from wedgesweep.diagnose.model import Model
 
 # Lowest level, over the fundamental of the displacement, and the factor from one level to the next.
 LOWEST, FACTOR = 0.12, 1.3
 # Number of levels, and the largest number where the bolster still sticks in some test.
 LEVELS, MOST_LEVELS = 17, 28
+# A bolster that moves less than this share of the measured motion sticks.
+STICKS = 0.01
 # Steps between the level at which the bolster sticks and the next one.
 FINE = 8
 
@@ -54,8 +57,7 @@ class _GridSearch:
         ]
         evaluations = self.model.evaluate_all(points)
         self.current = [each.point for each in evaluations]
-        insensitive = [self.model.data.insensitive(each) for each in evaluations]
-        self.sticking = np.array(insensitive) & self.unknown
+        self.sticking = np.array([_sticks(self.model.data, each) for each in evaluations]) & self.unknown
         self.stuck[self.sticking] = levels[self.sticking]
         for i, each in enumerate(evaluations):
             misfit = np.where(each.found_tests, each.chi2_by_test, np.inf)
@@ -81,3 +83,8 @@ def _tests_of(one: Point, other: Point, chosen: np.ndarray) -> Point:
     """A point with the amplitudes and states of some tests (T,) from another."""
     amplitude = np.where(chosen, other.nuisance[:, 0], one.nuisance[:, 0])
     return replace(_with_amplitude(one, amplitude), warm=one.warm.where(chosen, other.warm))
+
+
+def _sticks(data: FitData, evaluation: Evaluation) -> np.ndarray:
+    """Whether (T,) a test was measured to move, and sticks in the simulation."""
+    return evaluation.found_tests & (data.power_of(evaluation.response) < STICKS**2 * data.power)

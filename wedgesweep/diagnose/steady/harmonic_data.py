@@ -36,8 +36,6 @@ AMPLITUDE = NuisanceParameter(step=2e-3, max_step=0.1)
 # Effects that only a recorded input, or a recorded force, shows.
 OF_RECORDED = ("input_gain", "force_gain", "channel_delay")
 TONE_PHASE = NuisanceParameter(step=1e-2, max_step=0.3)
-# A bolster that moves less than this share of the measured motion sticks.
-STICKS = 0.01
 # A stated amplitude that a fit changes by more than this (relative) makes up for a wrong model.
 IMPLAUSIBLE = 0.3
 # Relative standard deviation of an amplitude that is held as stated.
@@ -291,10 +289,6 @@ class HarmonicData(WhitenedHarmonics, FitData):
     def needs_alignment(self, effects: Iterable[str]) -> bool:
         """Responses under a tone do not repeat: they depend on the input's phase where a record starts."""
         return self.has_tone(effects)
-
-    def insensitive(self, evaluation: Evaluation) -> np.ndarray:
-        """Whether (T,) a test was measured to move, and sticks in the simulation."""
-        return evaluation.found_tests & (self.power_of(evaluation.response) < STICKS**2 * self.power)
 
     def never_steady(self, scenario: Scenario) -> np.ndarray:
         """Whether (T,) a time that is a state (an age) exceeds that which any response takes to repeat."""

@@ -13,8 +13,6 @@ from math import ceil, log
 
 import numpy as np
 
-from wedgesweep.diagnose.trimmed_refit import MOST_LEFT_OUT
-
 # Distances, in units of the start, at which other starts are tried; numbers of directions, and of moves at
 # each distance.
 DISTANCES, DIRECTIONS, MOVES = (3e-2, 1e-2, 3e-3, 1e-3, 3e-4), 24, 4
@@ -26,8 +24,8 @@ SHARES = np.linspace(-1.0, 1.0, 101)
 # A velocity below this, in units of the start, is that of a mass at rest.
 AT_REST = 0.05
 # A test stands out if its misfit, over the median of all tests, is DEVIATIONS standard deviations of noise
-# too large. At most MOST_LEFT_OUT of the tests can stand out: where most are wrong, the model is.
-DEVIATIONS = 4.0
+# too large. At most this share of the tests can stand out: where most are wrong, the model is.
+DEVIATIONS, MOST = 4.0, 1.0 / 3.0
 # Where the median is WRONG times the squared noise the model is wrong, and tests differ anyway: then a test
 # stands out if it has CLEARLY times the median.
 WRONG, CLEARLY = 10.0, 3.0
@@ -39,7 +37,7 @@ def standing_out(chi2: np.ndarray, dof: np.ndarray) -> np.ndarray:
     over_median = chi2 / dof / median
     deviations = (over_median - 1.0) * np.sqrt(0.5 * dof)
     clear = (deviations > DEVIATIONS) & (over_median > (CLEARLY if median > WRONG else 1.0))
-    worst = np.argsort(-deviations)[: max(int(MOST_LEFT_OUT * dof.size), 1)]
+    worst = np.argsort(-deviations)[: max(int(MOST * dof.size), 1)]
     return worst[clear[worst]]
 
 
