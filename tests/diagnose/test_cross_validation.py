@@ -5,26 +5,33 @@ import pytest
 
 from tests.diagnose.synthetic import LAG, base_of, drawn, searched
 from wedgesweep.diagnose import accuracy, cross_validation
-from wedgesweep.diagnose.cross_validation import Gain, HeldOut, Predictor
+from wedgesweep.diagnose.cross_validation import Gain, Predictor
 from wedgesweep.diagnose.steady import harmonic_data
+
+POINTS = 32
 
 
 def serial(function, items):
     return list(map(function, items))
 
 
+def gain_of(squares):
+    """Gain over tests that were left out one by one, by what base and extended model and noise leave."""
+    count = len(squares)
+    return Gain(("test",) * count, np.arange(count), np.full(count, POINTS), np.array(squares))
+
+
 def test_gain_on_held_out_tests_reaches_the_noise():
     _, base, (lag,) = searched(drawn(LAG), "velocity_lag")
     measured = cross_validation.cross_validate(base.fit, lag.fit, Predictor(serial))
-    assert {each.scheme for each in measured.held_out} == {"frequency", "amplitude"}
+    assert set(measured.schemes) == {"frequency", "amplitude"}
     assert measured.excess_removed > 0.95
     assert measured.interval is None  # six tests are too few for one
 
 
 def test_less_error_than_is_allowed_is_no_excess():
     """Under a model error that is far from used up, all of the excess is gone, and no more than that."""
-    held_out = [HeldOut(i, "test", 400.0 + 40.0 * i, 10.0, 100, 2.0) for i in range(10)]
-    gain = Gain(tuple(held_out))
+    gain = gain_of([(400.0 + 40.0 * i, 10.0, 98.0) for i in range(10)])
     assert gain.excess_removed == 1.0
     assert gain.interval == [1.0, 1.0]
 
@@ -96,14 +103,11 @@ def test_tests_that_are_all_alike_are_left_out_one_by_one():
     assert cross_validation.held_out_accuracy(base_of(single), Predictor(serial)) is None
 
 
-POINTS = 32
-
-
 def predicted(*squares):
     """Gain over twelve tests: these (base, extended) and for the rest nothing that could be removed."""
     noise = np.random.default_rng(2).chisquare(POINTS - 1, 12 - len(squares))
     both = [*squares, *((q, q + 0.3) for q in noise)]
-    return Gain(tuple(HeldOut(i, "frequency", b, e, POINTS, 1.0) for i, (b, e) in enumerate(both)))
+    return gain_of([(*each, POINTS - 1.0) for each in both])
 
 
 def test_tests_in_which_nothing_shows_do_not_make_an_effect_uncertain_that_shows_in_few():

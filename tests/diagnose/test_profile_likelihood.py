@@ -112,15 +112,16 @@ def end_of_a_switch(monkeypatch, std, rise, value=0.1):
     """Upper end of the interval of a number in 0 to 1, by the rise of chi-squared, and what was tried."""
     tried = []
 
-    def held(fit, start, parameter, off):
-        tried.append(fit.x[parameter] + off * std)
-        return SimpleNamespace(chi2=fit.chi2 + rise(tried[-1]))
+    def held(side, off, start):
+        tried.append(value + off * std)
+        return SimpleNamespace(chi2=side.fit.chi2 + rise(tried[-1]))
 
-    monkeypatch.setattr(profile, "_held", held)
+    monkeypatch.setattr(profile._Side, "held", held)
     hypothesis = SimpleNamespace(parameters=[SimpleNamespace(switches=True)])
     model = SimpleNamespace(low=np.zeros(1), high=np.ones(1), hypothesis=hypothesis)
     fit = SimpleNamespace(x=np.array([value]), covariance=np.array([[std**2]]), model=model, chi2=50.0)
-    found = profile._profile_end(fit, 0, 1.0, profile._nearest(fit, 0, 1.0))
+    side = profile._Side(fit, 0, 1.0)
+    found = profile._profile_end(side, side.nearest)
     return value + found.end * std, tried
 
 

@@ -3,6 +3,7 @@
 import time
 from dataclasses import replace
 from itertools import combinations
+from types import SimpleNamespace
 
 import pytest
 
@@ -18,25 +19,23 @@ CANDIDATES = (*PAIR, "bolster_mass")
 
 @pytest.mark.parametrize("threads", [1, 2, 4])
 def test_what_is_affordable_does_not_depend_on_which_thread_is_faster(threads):
+    items = [SimpleNamespace(effects=(f"effect {i}", "another")) for i in range(8)]
+
     def worked(item):
-        time.sleep(0.02 * (item == 0))
+        time.sleep(0.02 * (item is items[0]))
         work.add(10.0)
         return item
 
     search = Search(None, (), threads=threads, budget=Budget(25.0))
     begun = work.done()
-
-    def named(item):
-        return f"effect {item}", "another"
-
-    assert search.each_affordable(worked, range(8), "numbers", named) == [0, 1, 2]
+    assert search.each_affordable(worked, items, "numbers") == items[:3]
     assert work.done() - begun == 30.0
     assert search.budget.left == -5.0
-    assert search.each_affordable(worked, range(2), "more numbers", named) == []
-    assert search.each(worked, range(2)) == [0, 1]
+    assert search.each_affordable(worked, items[:2], "more numbers") == []
+    assert search.each(worked, items[:2]) == items[:2]
     assert [each[:3] for each in search.budget.untried] == [("numbers", 5, 8), ("more numbers", 2, 2)]
     # What was left out once and tried another time was tried.
-    assert search.budget.never_tried == tuple(map(named, range(3, 8)))
+    assert search.budget.never_tried == tuple(item.effects for item in items[3:])
 
 
 def test_a_grant_adds_what_is_missing_and_no_more():

@@ -20,12 +20,13 @@ from wedgesweep.kinds import MEASURED
 if TYPE_CHECKING:
     from wedgesweep.diagnosis_result import DiagnosisResult
 
-DRAWN = ("misfit", "loops", "decays", "spectrogram", "candidates", "ladder", "gain", "missing-force")
-FIGURE_FILES = {kind: f"{kind}.png" for kind in DRAWN}
+# Figures that are written, with the kind of test that some of them are of.
+FIGURES = {
+    **{"misfit": "steady", "loops": "loop", "decays": "transient", "spectrogram": "transient"},
+    **dict.fromkeys(("candidates", "ladder", "gain", "missing-force"), ""),
+}
 # Marks a directory in which an earlier result is being replaced.
 REPLACING = ".unfinished-diagnosis"
-# Figures of one kind of test only.
-OF_KIND = {"misfit": "steady", "loops": "loop", "decays": "transient", "spectrogram": "transient"}
 
 
 @click.command()
@@ -201,7 +202,7 @@ def _result_files() -> tuple[str, ...]:
 
     data = (diagnosis_result.JSON, diagnosis_result.DATASET, diagnosis_result.EXTENDED)
     force = (diagnosis_result.FORCE_CONFIG, diagnosis_result.FORCE_TABLE)
-    return (*data, *force, *diagnosis_result.PARTS.values(), report.PAGE, *FIGURE_FILES.values())
+    return (*data, *force, *diagnosis_result.PARTS.values(), report.PAGE, *map(_file_of, FIGURES))
 
 
 def _move(made: Path, directory: Path, renews: bool = False) -> None:
@@ -228,25 +229,23 @@ def _draw(found: "DiagnosisResult", directory: Path, n_jobs: int) -> None:
     """Write the figures; skip those that need more than these tests give."""
     from wedgesweep.figures import parallel
 
-    kind_of_tests = found.document["kind"]
-    kinds = (kind_of_tests, *found.parts)
-    wanted = [
-        (kind, directory / file)
-        for kind, file in FIGURE_FILES.items()
-        if OF_KIND.get(kind, kind_of_tests) in kinds
-    ]
-    save = partial(_save, found)
+    kinds = ("", found.document["kind"], *found.parts)
+    wanted = [name for name, kind in FIGURES.items() if kind in kinds]
+    save = partial(_save, found, directory)
     for problem in filter(None, parallel.map_forked(save, wanted, n_jobs)):
         log.info(f"skipped {problem}")
 
 
-def _save(found: "DiagnosisResult", wanted: tuple[str, Path]) -> str | None:
+def _save(found: "DiagnosisResult", directory: Path, name: str) -> str | None:
     """Write a figure, or return why it cannot be drawn from these tests."""
     from wedgesweep import figures
 
-    kind, file = wanted
     try:
-        figures.save(figures.draw(found.of_kind(OF_KIND.get(kind, "")), kind), file)
+        figures.save(figures.draw(found.of_kind(FIGURES[name]), name), directory / _file_of(name))
     except ValueError as error:
         return str(error)
     return None
+
+
+def _file_of(figure: str) -> str:
+    return f"{figure}.png"

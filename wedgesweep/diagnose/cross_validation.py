@@ -50,45 +50,28 @@ class Prediction(NamedTuple):
         return np.where(self.evaluation.found_tests, misfit, self.data.power)
 
 
-@dataclass(frozen=True)
-class HeldOut:
-    """Squared misfit of one test under models that were fitted to other tests.
+@dataclass(frozen=True, eq=False)
+class Gain:
+    """Squared misfits of n tests that were left out, under models that were fitted to other tests.
 
-    ``local``: number of its own nuisance parameters that the test determines; one with a prior counts in
-    part.
+    ``schemes`` (n,): by which each was left out; ``tests`` (n,): its index in all data; ``observations``
+    (n,): its numbers; ``squares`` (n, 3): what base model, extended model and noise leave. Noise leaves
+    less than one for each observation, by what a test tells of its own nuisance parameters.
     """
 
-    test: int
-    scheme: str
-    base: float
-    extended: float
-    observations: int
-    local: float
+    schemes: tuple[str, ...]
+    tests: np.ndarray
+    observations: np.ndarray
+    squares: np.ndarray
 
     @property
-    def noise(self) -> float:
-        """Squared misfit that noise leaves after the nuisance parameters are fitted."""
-        return self.observations - self.local
-
-    def rmse(self, squared: float) -> float:
-        """Root mean square of whitened residuals with this squared misfit."""
-        return float(np.sqrt(squared / self.observations))
-
-
-@dataclass(frozen=True)
-class Gain:
-    """Gain over all held-out tests."""
-
-    held_out: tuple[HeldOut, ...]
+    def rmse(self) -> np.ndarray:
+        """Root mean squares of the whitened residuals of each test, (n, 3)."""
+        return np.sqrt(self.squares / self.observations[:, None])
 
     def mean_squares(self) -> np.ndarray:
-        """Mean squares of the whitened residuals that base model, extended model and noise leave, (3,)."""
-        return self._squares.sum(axis=0) / sum(each.observations for each in self.held_out)
-
-    @property
-    def _squares(self) -> np.ndarray:
-        """Squared misfits that base model, extended model and noise leave, (tests left out, 3)."""
-        return np.array([(each.base, each.extended, each.noise) for each in self.held_out])
+        """Mean squares of the whitened residuals over all tests, (3,)."""
+        return self.squares.sum(axis=0) / self.observations.sum()
 
     @property
     def excess_removed(self) -> float:
@@ -108,11 +91,11 @@ class Gain:
         not count. The quantiles are widened, as resampling underestimates the scatter of few tests
         (Hesterberg, 2015, "What teachers should know about the bootstrap", sec. 5.3).
         """
-        tests, rows = np.unique([each.test for each in self.held_out], return_inverse=True)
+        tests, rows = np.unique(self.tests, return_inverse=True)
         if len(tests) < FEWEST:
             return None
         sums = np.zeros((len(tests), 3))
-        np.add.at(sums, rows, self._squares)
+        np.add.at(sums, rows, self.squares)
         drawn = np.random.default_rng(0).integers(0, len(tests), (RESAMPLED, len(tests)))
         base, extended, noise = sums[drawn].sum(axis=1).T
         excess = base - noise
@@ -151,19 +134,15 @@ def cross_validate(base: Fit, extended: Fit, predict: Predictor) -> Gain:
     predict : Predictor
         Leaves groups of tests out of a fit.
     """
-    local, observations = local_numbers(extended), base.model.data.observations
-    both = [
-        # Without its effects the extended model is the base model, however its nuisance parameters are found.
-        (before, after if after.effects else before)
-        for before, after in zip(predict(base), predict(extended), strict=True)
-    ]
-    return Gain(
-        tuple(
-            HeldOut(int(test), before.scheme, float(b), float(e), int(observations[test]), float(local[test]))
-            for before, after in both
-            for test, b, e in zip(before.tests, before.misfit, after.misfit, strict=True)
-        )
-    )
+    before, after = predict(base), predict(extended)
+    # Without its effects the extended model is the base model, however its nuisance parameters are found.
+    after = [own if own.effects else other for own, other in zip(after, before, strict=True)]
+    tests = np.concatenate([each.tests for each in before])
+    left = [np.concatenate([each.misfit for each in predicted]) for predicted in (before, after)]
+    observations = base.model.data.observations
+    noise = observations - local_numbers(extended)
+    schemes = tuple(each.scheme for each in before for _ in each.tests)
+    return Gain(schemes, tests, observations[tests], np.column_stack([*left, noise[tests]]))
 
 
 def held_out_accuracy(fit: Fit, predict: Predictor) -> float | None:

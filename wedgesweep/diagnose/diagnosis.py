@@ -160,11 +160,9 @@ class Course:
     def _take_finished(self) -> None:
         """Take over what a stage of the search has fitted before it was cut off."""
         finished = [each for each in self.search.finished if each.fit.model.data is self.search.data]
-        if not finished:
-            return
-        known = best_of_each([*finished, *self.explained.explanations], penalised)
-        with suppress(Exception):  # what made the stage fail may fail here as well
-            self.found = self.explained_by(self.explained._replace(explanations=known))
+        if finished:
+            with suppress(Exception):  # what made the stage fail may fail here as well
+                self.found = self.explained_by(self.explained.joined(finished))
 
     def explained_by(self, explained: Explained) -> Diagnosis:
         """The diagnosis by the explanations of a search, rated where their fits ended."""

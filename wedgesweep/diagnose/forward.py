@@ -55,10 +55,12 @@ def _gained(before: Level, after: Level) -> bool:
 
 def _with_one_more(search: Search, best: Rated, singles: Mapping[str, Fit]) -> list[Rated]:
     """The best explanation with each other effect that can go with it; only the leading ones, best first."""
-    others = [each for each in singles if each not in best.effects and go_together((*best.effects, each))]
-    begun = search.each_affordable(
-        lambda effect: _begun(search, best, singles[effect]), others, NAME, lambda e: (*best.effects, e)
-    )
+    others = [
+        single
+        for name, single in singles.items()
+        if name not in best.effects and go_together((*best.effects, name))
+    ]
+    begun = search.each_affordable(lambda single: _begun(search, best, single), others, NAME)
     leading = sorted(begun, key=lambda fit: fit.chi2)[:FOLLOWED]
     found = search.each(lambda fit: rated_where_it_ended(Explanation(fit)), leading)
     return sorted(found, key=by_accuracy)

@@ -106,7 +106,7 @@ def _fit_combinations(job: PairSearch, combinations: Sequence[Combination], what
     """Fits of combinations, the best first."""
     search = job.search
     useful = [each for each in combinations if len(each.second.x) and go_together(each.effects)]
-    begun = search.each_affordable(lambda each: starting_fit(search, each), useful, what, _effects)
+    begun = search.each_affordable(lambda each: starting_fit(search, each), useful, what)
     further = f"{what}, followed further"
     fits = _best_of_pairs([fit for fit in begun if np.isfinite(fit.chi2)])
     fits = _continued(search, fits, ROUNDS[0], further)
@@ -126,12 +126,8 @@ def _continued(search: Search, fits: Sequence[Fit], iterations: int, what: str) 
     def followed(fit: Fit) -> Fit:
         return minimise(fit.model, fit.evaluation, iterations)
 
-    found = search.each_affordable(followed, order, what, _effects)
+    found = search.each_affordable(followed, order, what)
     return [*found, *order[len(found) :]]
-
-
-def _effects(each: Combination | Fit) -> tuple[str, ...]:
-    return each.effects
 
 
 def _best_of_pairs(fits: Sequence[Fit]) -> list[Fit]:

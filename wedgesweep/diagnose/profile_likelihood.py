@@ -40,6 +40,43 @@ class ProfileEnd(NamedTuple):
     best: Fit
 
 
+class _Side(NamedTuple):
+    """The upper (1) or lower (-1) side of one parameter of a fit."""
+
+    fit: Fit
+    parameter: int
+    sign: float
+
+    @property
+    def std(self) -> float:
+        """Standard deviation by the curvature, in which distances from the fit are told."""
+        return float(np.sqrt(self.fit.covariance[self.parameter, self.parameter]))
+
+    @property
+    def furthest(self) -> float:
+        """Distance to the bound; 0 if the parameter is at it."""
+        model = self.fit.model
+        bound = (model.high if self.sign > 0.0 else model.low)[self.parameter]
+        return float(abs(bound - self.fit.x[self.parameter])) / self.std
+
+    @property
+    def nearest(self) -> Fit:
+        """Fit with the parameter where its interval ends by the curvature, or at its bound before that."""
+        return self.held(min(TWO_SIDED, self.furthest), self.fit)
+
+    def held(self, off: float, start: Fit) -> Fit:
+        """Fit with the parameter held at a distance.
+
+        The others begin where the covariance predicts them, extrapolated from the fit ``start``.
+        """
+        fit, parameter = self.fit, self.parameter
+        value = fit.x[parameter] + self.sign * off * self.std
+        model = fit.model.holding(parameter, value)
+        slope = fit.covariance[:, parameter] / fit.covariance[parameter, parameter]
+        x = np.clip(start.x + slope * (value - start.x[parameter]), model.low, model.high)
+        return minimise(model, model.evaluate(replace(start.point, x=x)), ITERATIONS)
+
+
 def profile_likelihood(fit: Fit, each: Callable[[Callable, list], list]) -> Fit:
     """The fit, or a better one found beside it, with a covariance as wide as its profile likelihood.
 
@@ -54,15 +91,14 @@ def profile_likelihood(fit: Fit, each: Callable[[Callable, list], list]) -> Fit:
     each : callable
         Maps a function over a list.
     """
-    sides = list(product(range(fit.model.size), (1.0, -1.0)))
     ends = np.full((fit.model.size, 2), TWO_SIDED)
     for _ in range(RESTARTS if fit.evaluation.found else 0):
+        sides = [_Side(fit, *one) for one in product(range(fit.model.size), (1.0, -1.0))]
         # A lower minimum is mostly next to the fit: the near ends come first, as all others are moot then.
-        nearest = each(lambda side, fit=fit: _nearest(fit, *side), sides)
+        nearest = each(lambda side: side.nearest, sides)
         best = _lowest(fit, nearest)
         if best is fit:
-            tries = [(*side, near) for side, near in zip(sides, nearest, strict=True)]
-            found = each(lambda one, fit=fit: _profile_end(fit, *one), tries)
+            found = each(lambda one: _profile_end(*one), list(zip(sides, nearest, strict=True)))
             ends = np.reshape([one.end for one in found], ends.shape)
             best = _lowest(fit, [one.best for one in found])
         better = fit if best is fit else tight_refit(replace(best, model=fit.model))
@@ -79,37 +115,19 @@ def _lowest(fit: Fit, others: Sequence[Fit]) -> Fit:
     return best if best.chi2 < fit.chi2 - LOWER else fit
 
 
-def _furthest(fit: Fit, parameter: int, side: float) -> float:
-    """Distance of a parameter to its bound on one side, in standard deviations."""
-    bound = (fit.model.high if side > 0.0 else fit.model.low)[parameter]
-    return abs(bound - fit.x[parameter]) / np.sqrt(fit.covariance[parameter, parameter])
-
-
-def _nearest(fit: Fit, parameter: int, side: float) -> Fit:
-    """Fit with a parameter held where its interval ends by the curvature, or at its bound before that.
-
-    ``side``: 1 for the upper end, -1 for the lower one.
-    """
-    return _held(fit, fit, parameter, side * min(TWO_SIDED, _furthest(fit, parameter, side)))
-
-
-def _profile_end(fit: Fit, parameter: int, side: float, nearest: Fit) -> ProfileEnd:
-    """Move one parameter out until chi-squared has risen by about RISE, or is lower than at the fit.
-
-    ``nearest``: see ``_nearest``.
-    """
-    bounds = fit.model.low[parameter], fit.model.high[parameter]
-    std = np.sqrt(fit.covariance[parameter, parameter])
-    furthest = _furthest(fit, parameter, side)
-    switches = fit.model.hypothesis.parameters[parameter].switches
-    if TWO_SIDED * std > bounds[1] - bounds[0] and (switches or fit.x[parameter] in bounds):
-        return _end_by_bisection(fit, parameter, side, furthest, nearest)
+def _profile_end(side: _Side, nearest: Fit) -> ProfileEnd:
+    """Move one parameter out until chi-squared has risen by about RISE, or is lower than at the fit."""
+    fit, furthest = side.fit, side.furthest
+    low, high = fit.model.low[side.parameter], fit.model.high[side.parameter]
+    switches = fit.model.hypothesis.parameters[side.parameter].switches
+    if TWO_SIDED * side.std > high - low and (switches or fit.x[side.parameter] in (low, high)):
+        return _end_by_bisection(side, nearest)
     if switches:
-        return _end_beyond_ridges(fit, parameter, side, furthest, nearest)
+        return _end_beyond_ridges(side, nearest)
     end, held = TWO_SIDED, nearest
     for tries in range(TRIES):
         off = min(end, furthest)
-        held = _held(fit, held, parameter, side * off) if tries else nearest
+        held = side.held(off, held) if tries else nearest
         rise = held.chi2 - fit.chi2
         if rise < -LOWER:
             return ProfileEnd(end, held)
@@ -120,38 +138,37 @@ def _profile_end(fit: Fit, parameter: int, side: float, nearest: Fit) -> Profile
     return ProfileEnd(end, fit)
 
 
-def _end_by_bisection(fit: Fit, parameter: int, side: float, furthest: float, nearest: Fit) -> ProfileEnd:
+def _end_by_bisection(side: _Side, nearest: Fit) -> ProfileEnd:
     """The end where the curvature tells nothing, by bisection between the fit and the bound on one side.
 
-    ``furthest``: distance to that bound in standard deviations; 0 if the parameter is at it. ``nearest``: the
-    fit there, as the bound comes before the end by the curvature.
+    ``nearest``: the fit at the bound, which comes before the end by the curvature.
     """
-    low, high = 0.0, furthest
+    low, high = 0.0, side.furthest
     middle = high
-    for tries in range(TRIES if furthest else 0):
-        held = _held(fit, fit, parameter, side * middle) if tries else nearest
-        rise = held.chi2 - fit.chi2
+    for tries in range(TRIES if high else 0):
+        held = side.held(middle, side.fit) if tries else nearest
+        rise = held.chi2 - side.fit.chi2
         if rise < -LOWER:
             return ProfileEnd(middle, held)
         low, high = (middle, high) if rise < RISE else (low, middle)
         if low == high:
             break
         middle = 0.5 * (low + high)
-    return ProfileEnd(high, fit)
+    return ProfileEnd(high, side.fit)
 
 
-def _end_beyond_ridges(fit: Fit, parameter: int, side: float, furthest: float, nearest: Fit) -> ProfileEnd:
+def _end_beyond_ridges(side: _Side, nearest: Fit) -> ProfileEnd:
     """The end for the parameter of a switch: the first tried value beyond all that fit nearly as well.
 
     There chi-squared is rugged: impacts come and go, and several responses are equally steady.
-    ``nearest``: see ``_nearest``.
     """
-    if furthest <= TWO_SIDED:
-        return ProfileEnd(TWO_SIDED, fit)
+    fit, furthest = side.fit, side.furthest
     end = TWO_SIDED
+    if furthest <= TWO_SIDED:
+        return ProfileEnd(end, fit)
     values = np.geomspace(TWO_SIDED, furthest, VALUES)
     for value, beyond in zip(values, [*values[1:], furthest], strict=True):
-        held = nearest if value == values[0] else _held(fit, fit, parameter, side * value)
+        held = nearest if value == values[0] else side.held(value, fit)
         rise = held.chi2 - fit.chi2
         if rise < -LOWER:
             return ProfileEnd(value, held)
@@ -160,16 +177,3 @@ def _end_beyond_ridges(fit: Fit, parameter: int, side: float, furthest: float, n
         if rise < RISE:
             end = beyond
     return ProfileEnd(float(end), fit)
-
-
-def _held(fit: Fit, start: Fit, parameter: int, off: float) -> Fit:
-    """Fit with one parameter held ``off`` standard deviations from where ``fit`` has it.
-
-    The others begin where the covariance of ``fit`` predicts them, extrapolated from the fit ``start``.
-    """
-    variance = fit.covariance[parameter, parameter]
-    value = fit.x[parameter] + off * np.sqrt(variance)
-    model = fit.model.holding(parameter, value)
-    slope = fit.covariance[:, parameter] / variance
-    x = np.clip(start.x + slope * (value - start.x[parameter]), model.low, model.high)
-    return minimise(model, model.evaluate(replace(start.point, x=x)), ITERATIONS)

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, replace
 from functools import partial
 from itertools import count
 from math import inf
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, NamedTuple, Protocol, TypeVar
 
 import numpy as np
 
@@ -54,6 +54,13 @@ OTHER_NUISANCES = "other nuisances"
 # Evaluations of each effect over the range of its parameters, beside the base model.
 Scans = Mapping[str, Sequence[Evaluation]]
 Known = TypeVar("Known", bound=HasBest)
+
+
+class HasEffects(Protocol):
+    """Effects that may be fitted together, with what a fit of them begins with."""
+
+    @property
+    def effects(self) -> tuple[str, ...]: ...
 
 
 def quiet(step: str) -> None:
@@ -118,19 +125,14 @@ class Search:
         return self._each(function, list(items), what)
 
     def each_affordable(
-        self,
-        function: Callable[[Any], Any],
-        items: Sequence[Any],
-        what: str,
-        effects: Callable[[Any], tuple[str, ...]],
+        self, function: Callable[[Any], Any], items: Sequence[HasEffects], what: str
     ) -> list[Any]:
         """Results for the items, the most promising first, until the budget is spent.
 
-        ``what``: name of the stage, under which items that were left out are reported; ``effects``: gives
-        the effects of an item.
+        ``what``: name of the stage, under which items that were left out are reported.
         """
         found = self._each(function, items, what, self.budget.left)
-        self.budget.ended(what, len(found), [effects(item) for item in items])
+        self.budget.ended(what, len(found), [item.effects for item in items])
         return found
 
     def _each(
@@ -419,9 +421,9 @@ def _leading(evaluations: Sequence[Evaluation], entering: int | None) -> list[Ev
     return sorted(evaluations, key=_chi2)[:entering]
 
 
-def best_per_value(evaluations: Sequence[Evaluation], parameter: int = 0) -> list[Evaluation]:
-    """The best evaluation at each value of a parameter, best first, so that not all starts are neighbours."""
+def best_per_value(evaluations: Sequence[Evaluation]) -> list[Evaluation]:
+    """The best evaluation at each value of the first parameter, best first: not all starts are neighbours."""
     best: dict[float, Evaluation] = {}
     for evaluation in sorted(evaluations, key=_chi2):
-        best.setdefault(float(evaluation.point.x[parameter]), evaluation)
+        best.setdefault(float(evaluation.point.x[0]), evaluation)
     return list(best.values())

@@ -168,13 +168,13 @@ def _tests(found: Diagnosis) -> list[dict[str, Any]]:
 
 def _gain(gain: Gain | None) -> dict[str, Any]:
     """The gain, with null for every number where nothing was held out."""
-    if gain is None or not gain.held_out:
+    if gain is None:
         numbers = ("scheme", "rmse_base", "rmse_extended", "rmse_noise", "gain", "excess_removed", "ci95")
         return {**dict.fromkeys(numbers), "held_out": []}
     base, extended, noise = np.sqrt(gain.mean_squares())
-    schemes = dict.fromkeys(each.scheme for each in gain.held_out)
+    own = zip(gain.tests.tolist(), gain.schemes, gain.rmse.tolist(), strict=True)
     return {
-        "scheme": " and ".join(f"leave-one-{scheme}-out" for scheme in schemes),
+        "scheme": " and ".join(f"leave-one-{scheme}-out" for scheme in dict.fromkeys(gain.schemes)),
         "rmse_base": base,
         "rmse_extended": extended,
         "rmse_noise": noise,
@@ -182,14 +182,8 @@ def _gain(gain: Gain | None) -> dict[str, Any]:
         "excess_removed": gain.excess_removed,
         "ci95": gain.interval,
         "held_out": [
-            {
-                "test": each.test,
-                "scheme": each.scheme,
-                "rmse_base": each.rmse(each.base),
-                "rmse_extended": each.rmse(each.extended),
-                "rmse_noise": each.rmse(each.noise),
-            }
-            for each in gain.held_out
+            {"test": test, "scheme": scheme, "rmse_base": before, "rmse_extended": after, "rmse_noise": floor}
+            for test, scheme, (before, after, floor) in own
         ],
     }
 
