@@ -1,9 +1,11 @@
 """A first measured.toml that is written after a look at the data."""
 
+import re
 from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 from scipy.io import savemat, wavfile
 
 from tests import fixture_formats
@@ -104,6 +106,29 @@ def test_the_load_of_two_faces_belongs_to_the_model_of_each_test(tmp_path):
     # Motion of one frequency shows the spring less the inertia, here neither.
     assert found.model.oscillator["spring"] == 0.0
     assert "no record shows it" in (tmp_path / "model.toml").read_text()
+
+
+def test_a_damper_does_not_stand_for_the_friction_of_a_shaken_mass(tmp_path):
+    files, t, spring, damping, friction = [], np.arange(4000) / 250.0, 1400.0, 2.3, 1.2
+    for frequency in (3.0, 5.5, 8.0):
+        omega = 2.0 * np.pi * frequency
+
+        def rate(t, y, omega=omega):
+            dry = friction * np.tanh(y[1] / 1e-3)
+            return [y[1], -3.0 * np.sin(omega * t) - spring * y[0] - damping * y[1] - dry]
+
+        x, v = solve_ivp(rate, (0.0, t[-1]), [0.0, 0.0], t_eval=t, method="LSODA", rtol=1e-6).y
+        mass = -spring * x - damping * v - friction * np.tanh(v / 1e-3)
+        name = tmp_path / f"{frequency:g}.csv"
+        files.append(text(name, t, 3.0 * np.sin(omega * t), mass, header="t,table m/s^2,mass m/s^2"))
+    begun(tmp_path, *files)
+    first = (tmp_path / "model.toml").read_text()
+    found = {
+        key: float(re.search(rf"{key} = (\S+)", first)[1]) for key in ("spring_N_per_mm", "damping_N_s_per_m")
+    }
+    assert found["spring_N_per_mm"] == pytest.approx(1e-3 * spring, rel=0.03)
+    assert found["damping_N_s_per_m"] < 2.0 * damping
+    assert float(re.search(r"shows about (\S+) N", first)[1]) == pytest.approx(friction, rel=0.05)
 
 
 def test_a_free_motion_begins_when_it_is_let_go(tmp_path):

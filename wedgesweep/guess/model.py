@@ -154,25 +154,35 @@ def _integral(acceleration: np.ndarray, rate: float, order: int) -> np.ndarray:
 
 
 def _on_base(tests: tuple[TestRecord, ...], measurement: Measurement) -> Numbers:
-    """Spring and damper over the mass, by the motions of mass and base at the frequencies that have power."""
+    """Spring, damper and friction over the mass, by motions of mass and base where the mass has power.
+
+    Friction opposes velocity as a damper does; that it does not grow with it shows across tests.
+    """
     order = {"displacement": 0, "velocity": 1, "acceleration": 2}
     rows, values = [], []
     for test in tests:
         name, response = next(iter(test.responses.items()))
         assert test.input is not None
-        omega = 2.0 * pi * np.fft.rfftfreq(test.time.size, 1.0 / test.sampling_rate)
-        y, u = (np.fft.rfft((each - each.mean()) * np.hanning(each.size)) for each in (response, test.input))
+        omega, window = _frequencies(test), np.hanning(response.size)
+        y, u = (np.fft.rfft((each - each.mean()) * window) for each in (response, test.input))
         used = (np.abs(y) ** 2 > LINES * np.max(np.abs(y) ** 2)) & (omega > 0.0)
-        y, u, rate = y[used], u[used], 1j * omega[used]
+        rate = 1j * np.where(used, omega, inf)
         y, u = y / rate ** order[name], u / rate ** order[str(measurement.recorded_input)]
         relative = measurement.columns[name].get("of", "relative") == "relative"
         stretch, absolute = (y, y + u) if relative else (y - u, y)
-        row = np.column_stack([-stretch, -rate * stretch]) / np.linalg.norm(absolute * rate**2)
-        value = rate**2 * absolute / np.linalg.norm(absolute * rate**2)
+        velocity = np.where(used, 1j * omega * stretch, 0.0)
+        direction = np.fft.rfft(np.sign(np.fft.irfft(velocity, response.size)) * window)
+        value = -(omega[used] ** 2) * absolute[used]
+        row = -np.column_stack([stretch[used], velocity[used], direction[used]]) / np.linalg.norm(value)
         rows += [row.real, row.imag]
-        values += [value.real, value.imag]
+        values += [value.real / np.linalg.norm(value), value.imag / np.linalg.norm(value)]
     design, value = np.vstack(rows), np.concatenate(values)
     size = np.maximum(np.linalg.norm(design, axis=0), 1e-300)
-    spring, damping = (nnls(design / size, value)[0] / size).tolist()
+    spring, damping, friction = (nnls(design / size, value)[0] / size).tolist()
     spring = spring or (2.0 * pi * float(np.median([_frequency(test) for test in tests]))) ** 2
-    return Numbers(1.0, spring, damping, unseen=("mass",))
+    return Numbers(1.0, spring, damping, friction, unseen=("mass",))
+
+
+def _frequencies(test: TestRecord) -> np.ndarray:
+    """Angular frequencies (rad/s) of a spectrum of the records of a test."""
+    return 2.0 * pi * np.fft.rfftfreq(test.time.size, 1.0 / test.sampling_rate)
