@@ -49,9 +49,10 @@ def test_help_and_version():
     assert "0." in invoke("--version")
     for name in cli.commands:
         assert "--help" in invoke(name, "-h")
-    for kind, description in figures.DESCRIPTIONS.items():
-        assert f"{kind} " in invoke("plot", "-h")
-        assert description in invoke("plot", "-h")
+    told = invoke("plot", "-h")
+    for kind in figures.FIGURES.values():
+        assert f"{kind.name} " in told
+        assert kind.description in told
 
 
 def test_module_and_shell_completion_answer(here):
@@ -410,7 +411,7 @@ def test_an_error_of_the_system_without_a_number_is_told():
 def test_plot_all(here, drawn_dataset):
     invoke("plot", "all", drawn_dataset, "-o", "new/figures", "--beta", 0.4)
     made = {path.name for path in (here / "new" / "figures").iterdir()}
-    assert made == {f"{kind}.png" for kind in figures.DESCRIPTIONS}
+    assert made == {f"{kind}.png" for kind in figures.FIGURES}
 
 
 @pytest.mark.usefixtures("empty_pictures")

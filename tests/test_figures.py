@@ -21,7 +21,7 @@ from wedgesweep.figures import (
 )
 from wedgesweep.friction import LAWS
 
-KINDS = sorted(figures.DESCRIPTIONS)
+KINDS = sorted(figures.FIGURES)
 FROM_LISTS = ("friction-laws", "phase-portrait")
 FEWEST = {"bifurcation": "20 frequencies", "stick-map": "4 amplitudes"}
 FROM_WAVEFORMS = ("bifurcation", "phase-portrait", "response")
@@ -137,7 +137,7 @@ def test_failed_write_keeps_the_old_picture(tmp_path):
 def test_file_is_found_under_its_name(kind):
     declared = figures.FIGURES[kind]
     module = declared.load()
-    assert (kind, figures.DESCRIPTIONS[kind]) == (module.NAME, module.DESCRIPTION)
+    assert (kind, declared.description) == (module.NAME, module.DESCRIPTION)
     assert declared.needs == module.NEEDS
 
 

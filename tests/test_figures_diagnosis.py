@@ -24,7 +24,7 @@ from wedgesweep.figures.diagnosis.selection import motion
 
 # Figures of steady tests without a load; tests/diagnose draws loops and loads.
 OF_TRANSIENTS = ("decays", "spectrogram")
-KINDS = sorted(set(diagnosis.DESCRIPTIONS) - {"loops", "column-load", *OF_TRANSIENTS})
+KINDS = sorted(set(diagnosis.FIGURES) - {"loops", "column-load", *OF_TRANSIENTS})
 BY_TEST = ("harmonics", "leftover-force", "phase-plane", "waveforms")
 
 

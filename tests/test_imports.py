@@ -174,7 +174,7 @@ UNLOADED = {
     "from wedgesweep.sweep import outcomes; from wedgesweep.figures import models": (
         *("matplotlib", "numba", "scipy", "wedgesweep.config"),
     ),
-    "from wedgesweep.figures import DESCRIPTIONS; assert DESCRIPTIONS": (
+    "from wedgesweep.figures import FIGURES; assert FIGURES": (
         *OPTIONAL,
         "scipy",
         "numba",

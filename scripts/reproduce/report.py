@@ -73,8 +73,7 @@ def _cases_of(name: str, run: Run, law: str) -> dict[str, Any]:
 
 
 def _failed(run: Run) -> list[str]:
-    found = outcomes.of_dataset(run.ds)
-    return [found.described(place) for place in found.failures.tolist()]
+    return [outcomes.described(run.ds, place) for place in outcomes.failures(run.ds).tolist()]
 
 
 def _provenance(run: Run) -> dict[str, Any]:

@@ -253,15 +253,14 @@ def test_status_export_and_errors_name_the_numbers(tmp_path):
     axes = "[sweep.axes]\nsuspension.column_angle_deg = [-4.0, 4.0]\nfriction.dynamic = [0.29, 0.5]\n"
     made = sweep(tmp_path, axes, amplitude_mm="2.0", frequency_hz="15.0")
     ds = made.run(n_jobs=1)
-    found = outcomes.of_dataset(ds)
     words = "suspension.column_angle_deg -4, friction.dynamic 0.5"
-    assert [words in found.described(place) for place in found.failures] == [True]
+    assert [words in outcomes.described(ds, place) for place in outcomes.failures(ds)] == [True]
     with pytest.raises(CaseFailedError, match=words):
         made.run(n_jobs=1, fail_fast=True, fresh=True)
     made.out.unlink()
-    begun = unfinished.outcomes_of(made.out)
-    assert words in begun.described(len(begun) - 1)
-    assert unfinished.dataset_of(made.out)["status"].dims == ds["status"].dims
+    begun = unfinished.dataset_of(made.out)
+    assert words in outcomes.described(begun, outcomes.failures(begun)[0])
+    assert begun["status"].dims == ds["status"].dims
 
 
 def test_both_ends_of_breakaway_are_told_along_the_axes_that_change_them():

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from tests.command import invoke, python_calls
-from wedgesweep import config
+from wedgesweep import config, formatting
 from wedgesweep.config import Case, Config
+from wedgesweep.outcome import lifted, unsettled
 from wedgesweep.sweep import dataset, estimate, labels, outcomes, variables
 from wedgesweep.sweep.chunks import CHUNK, Rows
 from wedgesweep.sweep.run import Sweep
@@ -168,10 +169,9 @@ def test_a_dataset_of_many_cases_is_summed_up_in_columns(tmp_path):
     records["periodicity"][:7] = 1.0
     coords = dataset.coordinates(sweep.config.case_coordinates(), sweep.sizes)
     dims = dict(zip(sweep.config.sweep.dims, sweep.config.sweep.shape, strict=True))
-    found = outcomes.of_dataset(dataset.assemble(records, coords, dims, {}, labels.long_names(sweep.config)))
-    assert {str(outcome): count for outcome, count in found.counts.items()} == {"ok": 89_998, "locked": 2}
-    assert (found.unsettled, found.lifted, found.failures.tolist()) == (6, 0, [5, 70_000])
-    case, unit, _ = found.describe_case(70_000)
-    assert (case, unit) == (sweep.config.sweep.case(70_000), "m")
-    assert found.described(70_000).startswith("coulomb, beta ")
-    assert found.described(70_000).endswith("mm: locked: locks")
+    ds = dataset.assemble(records, coords, dims, {}, labels.long_names(sweep.config))
+    assert {str(each): count for each, count in outcomes.counts(ds).items()} == {"ok": 89_998, "locked": 2}
+    assert (int(unsettled(ds).sum()), int(lifted(ds).sum())) == (6, 0)
+    assert outcomes.failures(ds).tolist() == [5, 70_000]
+    case = sweep.config.sweep.case(70_000)
+    assert outcomes.described(ds, 70_000) == f"{formatting.case(*case, unit='m')}: locked: locks"

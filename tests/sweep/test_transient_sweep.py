@@ -100,7 +100,6 @@ def test_an_interrupted_sweep_is_resumed(folder):
     part = Sweep(config.load("release.toml"), folder / "part.nc")
     with Journal(part.journal_path, part.dtype, part.journal_header) as journal:
         journal.append(records)
-    assert unfinished.outcomes_of(folder / "part.nc").describe_case(1)[0].amplitude == 1.0
     drawn = unfinished.dataset_of(folder / "part.nc")
     assert (drawn["status"] == 0).sum() == 2
     assert "2 ok, 4 remaining" in invoke("status", "part.nc")

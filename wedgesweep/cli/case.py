@@ -12,6 +12,7 @@ from wedgesweep.cli.failure import SOME_FAILED, Failure
 from wedgesweep.cli.messages import log
 from wedgesweep.cli.options import AT, CONFIG, PLUGIN, OutputPath, axis_values, command_line
 from wedgesweep.cli.run import print_remark
+from wedgesweep.outcome import lifted, unsettled
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -99,17 +100,16 @@ def _numbers(at: tuple[str, ...]) -> dict[str, float]:
 def _print_remarks(ds: "xr.Dataset") -> None:
     """Warn of what makes the numbers of a solved case doubtful."""
     from wedgesweep.friction import LAWS
-    from wedgesweep.sweep import outcomes
 
-    found, law = outcomes.of_dataset(ds), ds["friction_law"].item()
-    if found.lifted:
+    law = ds["friction_law"].item()
+    if lifted(ds).item():
         share = f"{100.0 * ds['lift_off_fraction'].item():.2g} % of the slipping time"
         log.warning(f"outside of the model's validity: a joint pulls in {share}; a real one would lift off")
     creeps = ds["stick_fraction"].item() == 1.0 and ds["peak_to_peak"].item() > 0.0
     if creeps and not LAWS[law].SET_VALUED:
         travel = f"{ds['peak_to_peak'].item() * 1e3:.3g} mm"
         log.warning(f"a stick fraction of 1 is no rest: {law} creeps all the time, by {travel}")
-    if found.unsettled:
+    if unsettled(ds).item():
         log.warning("not settled: the response still changes from period to period")
 
 

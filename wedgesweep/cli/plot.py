@@ -13,7 +13,7 @@ from wedgesweep import figures
 from wedgesweep.cli.failure import Failure
 from wedgesweep.cli.messages import log
 from wedgesweep.cli.options import AT, DATASET, UNITS, FiniteRange, GivenPath, axis_values, require_place_for
-from wedgesweep.figures import DESCRIPTIONS, FORMATS, diagnosis, measured, samples, transient
+from wedgesweep.figures import FORMATS, diagnosis, measured, samples, transient
 from wedgesweep.kinds import is_measured
 from wedgesweep.outcome import Outcome
 from wedgesweep.units import SI
@@ -25,8 +25,15 @@ if TYPE_CHECKING:
     from wedgesweep.figures import Data
 
 ALL = "all"
-FAMILIES = (DESCRIPTIONS, transient.DESCRIPTIONS, samples.DESCRIPTIONS, diagnosis.DESCRIPTIONS)
-KINDS = dict.fromkeys(name for family in (*FAMILIES, measured.DESCRIPTIONS) for name in family) | {ALL: None}
+# Figures by the data that they draw.
+FAMILIES = {
+    "For a dataset, KIND is one of": figures.FIGURES,
+    "For a dataset whose input does not repeat ([input] in its config), one of": transient.FIGURES,
+    "For a dataset of samples ([sweep.sample] in its config), one of": samples.FIGURES,
+    "For the directory of a diagnosis, one of": diagnosis.FIGURES,
+    "For a measured.toml": measured.FIGURES,
+}
+KINDS = dict.fromkeys(name for family in FAMILIES.values() for name in family) | {ALL: None}
 # What drawing raises where a part of a diagnosis is missing or of another kind.
 DAMAGE = (LookupError, TypeError, AttributeError, AssertionError)
 # So many values are listed one by one.
@@ -34,36 +41,21 @@ MOST_LISTED = 8
 SUFFIXES = tuple(suffix[1:] for suffix in FORMATS)
 
 
-def _table(descriptions: dict[str, str]) -> str:
-    return "\n".join(f"  {kind:<16} {text}" for kind, text in descriptions.items())
+def _paragraph(about: str, descriptions: dict[str, str]) -> str:
+    """A paragraph of the help that keeps its lines."""
+    return "\n".join(["\b", about, *(f"  {kind:<16} {text}" for kind, text in descriptions.items())])
 
 
-HELP = f"""Draw a figure of OUT: the dataset of a run, the directory of a diagnosis, or a measured.toml.
-
-\b
-For a dataset, KIND is one of
-{_table(DESCRIPTIONS)}
-
-\b
-For a dataset whose input does not repeat ([input] in its config), one of
-{_table(transient.DESCRIPTIONS)}
-
-\b
-For a dataset of samples ([sweep.sample] in its config), one of
-{_table(samples.DESCRIPTIONS)}
-
-\b
-For the directory of a diagnosis, one of
-{_table(diagnosis.DESCRIPTIONS)}
-
-\b
-For a measured.toml
-{_table(measured.DESCRIPTIONS)}
-
-\b
-For all of them
-  {ALL:<16} every figure that suits OUT
-"""
+HELP = "\n\n".join(
+    [
+        "Draw a figure of OUT: the dataset of a run, the directory of a diagnosis, or a measured.toml.",
+        *(
+            _paragraph(about, {name: kind.description for name, kind in family.items()})
+            for about, family in FAMILIES.items()
+        ),
+        _paragraph("For all of them", {ALL: "every figure that suits OUT"}),
+    ]
+)
 
 POSITIVE = FiniteRange(min=0.0, min_open=True)
 

@@ -8,7 +8,7 @@ import click
 
 from wedgesweep.cli.failure import Failure
 from wedgesweep.cli.options import DATASET
-from wedgesweep.cli.summary import print_outcomes, print_summary
+from wedgesweep.cli.summary import print_summary
 from wedgesweep.files import json_object
 
 if TYPE_CHECKING:
@@ -57,7 +57,7 @@ def _unfinished(path: Path) -> int:
     _print_versions(header)
     for difference in differences(header, fingerprint(settings)):
         click.echo(f"cannot be resumed: {difference}")
-    return print_outcomes(unfinished.outcomes_of(path), total=settings.sweep.count)
+    return print_summary(unfinished.dataset_of(path, waveforms=False))
 
 
 def _fingerprint(ds: "xr.Dataset") -> dict[str, str]:

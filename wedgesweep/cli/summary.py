@@ -7,11 +7,11 @@ import click
 from wedgesweep.cli.failure import SOME_FAILED, Failure
 from wedgesweep.cli.messages import log
 from wedgesweep.formatting import counted, duration, size
+from wedgesweep.outcome import Outcome, lifted, unsettled
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from wedgesweep.sweep.outcomes import Outcomes
     from wedgesweep.sweep.run import Sweep
     from wedgesweep.sweep.verification import VerifiedCase
 
@@ -46,30 +46,29 @@ def require_confirmed(sweep: "Sweep", n_jobs: int, confirmed: bool) -> None:
 
 
 def print_summary(ds: "xr.Dataset") -> int:
-    """Print counts and the first failures; return the exit code."""
+    """Print how the cases of a dataset ended, and the first failures; return the exit code."""
     from wedgesweep.sweep import outcomes
 
-    return print_outcomes(outcomes.of_dataset(ds))
-
-
-def print_outcomes(found: "Outcomes", total: int | None = None) -> int:
-    """Print the summary of the finished cases out of ``total``; return the exit code."""
-    counts = ", ".join(f"{count} {status}" for status, count in found.counts.items())
-    remaining = "" if total is None else f", {total - len(found)} remaining"
-    click.echo(f"{counted(total or len(found), 'case')}: {counts or 'none finished'}{remaining}")
-    _print_share(found.unsettled, len(found), "did not reach steady state (variables period, periodicity)")
+    total, counts = ds["status"].size, outcomes.counts(ds)
+    remaining = counts.pop(Outcome.NOT_RUN, None)
+    ended = ", ".join(f"{count} {outcome}" for outcome, count in counts.items()) or "none finished"
+    click.echo(f"{counted(total, 'case')}: {ended}{f', {remaining} remaining' if remaining else ''}")
+    finished, pulling = sum(counts.values()), int(lifted(ds).sum())
     _print_share(
-        found.lifted,
-        len(found),
-        f"{'lies' if found.lifted == 1 else 'lie'} outside of the model's validity: a joint pulls where "
+        int(unsettled(ds).sum()), finished, "did not reach steady state (variables period, periodicity)"
+    )
+    _print_share(
+        pulling,
+        finished,
+        f"{'lies' if pulling == 1 else 'lie'} outside of the model's validity: a joint pulls where "
         "a real one would lift off (variable lift_off_fraction)",
     )
-    failed = found.failures
-    for place in failed[:LISTED].tolist():
-        click.echo(f"  {found.described(place)}")
+    failed = outcomes.failures(ds).tolist()
+    for place in failed[:LISTED]:
+        click.echo(f"  {outcomes.described(ds, place)}")
     if len(failed) > LISTED:
         click.echo(f"  and {len(failed) - LISTED} more")
-    return SOME_FAILED if len(failed) else 0
+    return SOME_FAILED if failed else 0
 
 
 def _print_share(count: int, total: int, what: str) -> None:

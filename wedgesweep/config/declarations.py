@@ -1,6 +1,6 @@
 """Declaration of every config key with its default, range and meaning."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from math import nan, sqrt
 from typing import Any
 
@@ -63,12 +63,20 @@ def _series(quantity: Quantity, example: object) -> Series:
     )
 
 
-EXCITATION = Choice(
-    key="excitation",
-    meaning='motion of the base, or (oscillator only) a force on the mass; default: "base"',
-    choices=EXCITATIONS,
-    optional=True,
-    example=BASE,
+def _optional(key: str, meaning: str, choices: Collection[str], example: str) -> Choice:
+    return Choice(key=key, meaning=meaning, choices=choices, optional=True, example=example)
+
+
+def _off(quantity: Quantity, meaning: str) -> Number:
+    """A number that an absent key switches off, whatever the default of its effect is."""
+    return Number.of(quantity, meaning=meaning, default=None, optional=True, example=quantity.default)
+
+
+EXCITATION = _optional(
+    "excitation",
+    'motion of the base, or (oscillator only) a force on the mass; default: "base"',
+    EXCITATIONS,
+    BASE,
 )
 
 
@@ -189,13 +197,7 @@ SOLVER = table(
         _whole(
             "settle_periods", None, "periods simulated before those that are kept", 1, 100_000, example=60
         ),
-        Choice(
-            key="settle",
-            meaning="run until the response repeats (event-driven only)",
-            choices=("steady",),
-            optional=True,
-            example="steady",
-        ),
+        _optional("settle", "run until the response repeats (event-driven only)", ("steady",), "steady"),
     ),
     Number.of(
         Quantity(
@@ -247,19 +249,17 @@ OSCILLATOR_TABLE = table(
         default=BASE,
     ),
     Number.of(BELT_VELOCITY, optional=True, example=200.0),
-    Choice(
-        key="motion",
-        meaning="rotation: angles for lengths, torques for forces, and keys in rad, N m and kg m^2",
-        choices=MOTIONS,
-        optional=True,
-        example=ROTATION,
+    _optional(
+        "motion",
+        "rotation: angles for lengths, torques for forces, and keys in rad, N m and kg m^2",
+        MOTIONS,
+        ROTATION,
     ),
-    Choice(
-        key="restoring_force",
-        meaning="of the spring; pendulum: of a rotation, k sin(x), where the spring is m g l",
-        choices=RESTORING,
-        optional=True,
-        example=LINEAR,
+    _optional(
+        "restoring_force",
+        "of the spring; pendulum: of a rotation, k sin(x), where the spring is m g l",
+        RESTORING,
+        LINEAR,
     ),
     Number.of(COUPLING, optional=True, example=0.5),
     *(
@@ -295,34 +295,23 @@ def _model() -> Table:
                 "suspension",
                 "the suspension; defaults: Table 1 of the paper",
                 *map(Number.of, SUSPENSION),
-                Choice(
-                    key="damping",
-                    meaning="whether the springs of the wedges stand on the side frame, or on the bolster",
-                    choices=DAMPING,
-                    optional=True,
-                    example=CONSTANT,
+                _optional(
+                    "damping",
+                    "whether the springs of the wedges stand on the side frame, or on the bolster",
+                    DAMPING,
+                    CONSTANT,
                 ),
-                Choice(
-                    key="joints",
-                    meaning="whether both faces of a wedge are held, or may lift off, fall back and hit",
-                    choices=JOINTS,
-                    optional=True,
-                    example=UNILATERAL,
+                _optional(
+                    "joints",
+                    "whether both faces of a wedge are held, or may lift off, fall back and hit",
+                    JOINTS,
+                    UNILATERAL,
                 ),
-                Number(
-                    key=RESTITUTION.key,
-                    meaning='coefficient of restitution of impacts, for joints = "unilateral" (0 if absent)',
-                    quantity=RESTITUTION,
-                    optional=True,
-                    example=RESTITUTION.default,
+                _off(
+                    RESTITUTION,
+                    'coefficient of restitution of impacts, for joints = "unilateral" (0 if absent)',
                 ),
-                Number(
-                    key=LOCKED_IN.key,
-                    meaning="share of the band of rest that set-valued friction holds (0 if absent)",
-                    quantity=LOCKED_IN,
-                    optional=True,
-                    example=LOCKED_IN.default,
-                ),
+                _off(LOCKED_IN, "share of the band of rest that set-valued friction holds (0 if absent)"),
                 default={},
             ),
             OSCILLATOR_TABLE,

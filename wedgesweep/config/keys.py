@@ -139,9 +139,10 @@ class Number(Key):
 
     @classmethod
     def of(cls, quantity: Quantity, **more: Any) -> Self:
-        """Key of a quantity; a default that is not finite (a limit) is no default."""
+        """Key of a quantity; a default that is not finite (a limit) is no default. ``more`` takes precedence."""
         default = quantity.default if isfinite(quantity.default) else None
-        return cls(key=quantity.key, meaning=quantity.meaning, default=default, quantity=quantity, **more)
+        own = {"key": quantity.key, "meaning": quantity.meaning, "default": default}
+        return cls(quantity=quantity, **(own | more))
 
     @property
     def limits(self) -> str:

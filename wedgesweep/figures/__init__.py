@@ -32,9 +32,14 @@ DOTS_PER_INCH = 200
 LAW, AT = "law", "at"
 # One more of figures over any axes: a system of units.SYSTEMS.
 UNITS = "units"
+# What a diagnosis lacks whose tests are all of other kinds.
+LACKS = {
+    "steady": "no test is of steady vibration",
+    "transient": "the tests are no transients",
+    "loop": "the tests are no loops",
+}
 
 FIGURES = catalogue.declared(__path__[0], __name__)
-DESCRIPTIONS = {name: kind.description for name, kind in FIGURES.items()}
 
 
 def draw(data: "Data", name: str, ax: "Axes | None" = None, **picks: Any) -> "Figure":
@@ -71,12 +76,13 @@ def draw(data: "Data", name: str, ax: "Axes | None" = None, **picks: Any) -> "Fi
     """
     import xarray as xr
 
+    from wedgesweep.diagnosis_result import DiagnosisResult
     from wedgesweep.figures import cases, models
 
     kind = kind_of(data, name)
     try:
         _require_known(picks, options(kind))
-        checked = data
+        checked = _of_tests(data, kind.tests) if isinstance(data, DiagnosisResult) else data
         if isinstance(data, xr.Dataset):
             data = _to_be_drawn(data, picks) if kind.any_axes else models.of_one(data, picks.pop(AT, {}))
             checked = cases.checked(data, kind.needs, kind.case_lists)
@@ -93,6 +99,14 @@ def draw(data: "Data", name: str, ax: "Axes | None" = None, **picks: Any) -> "Fi
     if _turns(data):
         _relabel(panels.figure)
     return whole
+
+
+def _of_tests(result: "DiagnosisResult", tests: str) -> "DiagnosisResult":
+    """The part of a diagnosis with tests of a kind; raises ValueError if there are none."""
+    part = result.of_kind(tests)
+    if tests and part.document["kind"] != tests:
+        raise ValueError(LACKS[tests])
+    return part
 
 
 def _to_be_drawn(ds: "xr.Dataset", picks: dict[str, Any]) -> "xr.Dataset":

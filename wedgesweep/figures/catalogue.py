@@ -8,7 +8,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-CONSTANTS = ("NAME", "DESCRIPTION", "NEEDS", "CASE_LISTS", "ANY_AXES")
+CONSTANTS = ("NAME", "DESCRIPTION", "NEEDS", "CASE_LISTS", "ANY_AXES", "TESTS")
 
 
 @dataclass(frozen=True)
@@ -17,7 +17,7 @@ class FigureKind:
 
     ``needs`` are the variables and attributes that a sweep's dataset must have, and ``case_lists`` tells
     whether the figure also draws a dataset that is a list of cases instead of a grid; ``any_axes``, whether
-    it draws several models at once.
+    it draws several models at once. ``tests``: the kind of tests of a diagnosis that it draws, "" for all.
     """
 
     name: str
@@ -26,6 +26,7 @@ class FigureKind:
     needs: tuple[str, ...] = ()
     case_lists: bool = False
     any_axes: bool = False
+    tests: str = ""
 
     @property
     def picks(self) -> tuple[str, ...]:

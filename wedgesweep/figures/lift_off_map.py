@@ -8,7 +8,7 @@ from matplotlib.collections import QuadMesh
 
 from wedgesweep.figures.maps import Edges, panel_per_law
 from wedgesweep.figures.panels import Panels, Target
-from wedgesweep.figures.validity import LIFT_OFF, OPENS
+from wedgesweep.outcome import LIFT_OFF, OPENS
 
 NAME = "lift-off-map"
 DESCRIPTION = "share of time with an open contact, or with a joint that pulls, over frequency and amplitude"

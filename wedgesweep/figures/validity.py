@@ -9,22 +9,13 @@ from matplotlib.lines import Line2D
 
 from wedgesweep import formatting
 from wedgesweep.figures import style
-from wedgesweep.outcome import settled
+from wedgesweep.outcome import OPENS, lifted, unsettled
 
-LIFT_OFF = "lift_off_fraction"  # a normal force that is given has none
-OPENS = "column_open_fraction"  # of joints that may lift off
 # Hollow: lift-off; grey: unsettled; a grey ring: both.
 POINT = {"linestyle": "", "marker": "o", "markersize": 4.5, "zorder": 4}
 HOLLOW: dict[str, Any] = {**POINT, "markerfacecolor": "white"}
 PALE: dict[str, Any] = {**POINT, "color": "0.6"}
 FEW_POINTS = 25
-
-
-def lifted(ds: xr.Dataset) -> xr.DataArray:
-    """Whether a held joint pulls in each case, where a real one would lift off: the model does not hold."""
-    if LIFT_OFF not in ds or OPENS in ds:
-        return xr.zeros_like(ds["status"], bool)
-    return ds[LIFT_OFF] > 0.0
 
 
 def opened(ds: xr.Dataset) -> xr.DataArray | None:
@@ -44,13 +35,6 @@ def marked_samples(case: xr.Dataset) -> dict[str, np.ndarray]:
 def note_of_open(ds: xr.Dataset) -> str:
     """What the colour of open contacts means, to go on with; empty where joints are held."""
     return "" if opened(ds) is None else "; blue: a contact is open"
-
-
-def unsettled(ds: xr.Dataset) -> xr.DataArray:
-    """Whether each solved case was still changing when it ended."""
-    if not {"period", "periodicity"} <= set(ds.variables):
-        return xr.zeros_like(ds["status"], bool)
-    return (ds["status"] == 0) & ~settled(ds["period"], ds["periodicity"])
 
 
 def mark(ax: Axes, x: np.ndarray, y: np.ndarray, case: xr.Dataset, color: str) -> None:

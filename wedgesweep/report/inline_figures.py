@@ -64,7 +64,7 @@ def _draw(result: DiagnosisResult, numbered: tuple[int, Wanted]) -> Markup:
     except ValueError as error:
         return html.paragraph(f"No figure ({error}).", class_="note")
     width, height = (round(PIXELS_PER_INCH * side) for side in figure.get_size_inches())
-    alternative = f"{diagnosis.DESCRIPTIONS[wanted.name].capitalize()}. {wanted.caption}"
+    alternative = f"{diagnosis.FIGURES[wanted.name].description.capitalize()}. {wanted.caption}"
     address = "data:image/svg+xml;base64," + b64encode(figures.svg(figure)).decode("ascii")
     # Its size keeps the page from jumping while it opens.
     image = html.image(src=address, width=width, height=height, alt=alternative)

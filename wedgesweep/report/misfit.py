@@ -7,7 +7,7 @@ import numpy as np
 
 from wedgesweep import formatting
 from wedgesweep.diagnosis_result import DiagnosisResult
-from wedgesweep.figures.diagnosis import DESCRIPTIONS
+from wedgesweep.figures import diagnosis
 from wedgesweep.figures.diagnosis.selection import TESTS_SHOWN, by_misfit
 from wedgesweep.report import html, phrases
 from wedgesweep.report.html import Markup
@@ -115,7 +115,8 @@ def _rest(draw: InlineFigures, tests: Sequence[int]) -> Markup:
         return Markup()
     summary = "The other test" if len(tests) == 1 else f"The other {len(tests)} tests"
     return html.details(
-        summary, *(draw(kind, f"{DESCRIPTIONS[kind].capitalize()}.", tests) for kind in BY_TEST)
+        summary,
+        *(draw(kind, f"{diagnosis.FIGURES[kind].description.capitalize()}.", tests) for kind in BY_TEST),
     )
 
 

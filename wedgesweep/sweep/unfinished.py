@@ -7,40 +7,26 @@ import numpy as np
 import xarray as xr
 
 from wedgesweep import config
-from wedgesweep.config import Case
+from wedgesweep.config import Config
 from wedgesweep.errors import SweepError
 from wedgesweep.sweep import journal, variables
 from wedgesweep.sweep.dataset import journal_of
-from wedgesweep.sweep.outcomes import COLUMNS, LIFT_OFF, Outcomes
 from wedgesweep.sweep.run import Sweep
 
 
-def dataset_of(out: Path) -> xr.Dataset:
+def dataset_of(out: Path, waveforms: bool = True) -> xr.Dataset:
     """Dataset of an interrupted run to ``out``, with status not_run where nothing is known yet.
 
-    Raises SweepError if its journal is damaged, as ``outcomes_of`` does.
+    Raises SweepError if its journal is damaged.
     """
     sweep, done = _begun(out)
+    if not waveforms:
+        solver = sweep.config.document["solver"] | {"keep_waveforms": False}
+        sweep = Sweep(Config(sweep.config.document | {"solver": solver}), out)
     records = variables.blank(sweep.dtype, np.arange(sweep.count))
-    records[done["index"]] = done
+    names = list(sweep.dtype.names or ())
+    records[done["index"]] = done[names]
     return sweep.assembled(records, datetime.now(UTC))
-
-
-def outcomes_of(out: Path) -> Outcomes:
-    """How the finished cases of an unfinished sweep ended."""
-    sweep, records = _begun(out)
-    settings = sweep.config
-
-    def described(place: int) -> tuple[Case, str, str]:
-        case = settings.sweep.case(records["index"][place])
-        return case, settings.case_unit, records["message"][place].decode()
-
-    nothing = np.zeros(len(records))
-    lifted = nothing if settings.opens else records[LIFT_OFF]
-    if settings.transient:
-        return Outcomes(records["status"], nothing + 1.0, nothing, lifted, described)
-    columns = {name: records[name] for name in COLUMNS} | {LIFT_OFF: lifted}
-    return Outcomes(**columns, describe_case=described)
 
 
 def _begun(out: Path) -> tuple[Sweep, np.ndarray]:

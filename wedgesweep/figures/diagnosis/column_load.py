@@ -13,6 +13,7 @@ from wedgesweep.figures.panels import Panels, Target
 
 NAME = "column-load"
 DESCRIPTION = "normal force of a wedge on its column over one period, measured and simulated"
+TESTS = "steady"
 
 
 def draw(target: Target, result: DiagnosisResult, tests: Sequence[int] | None = None) -> Panels:

@@ -14,6 +14,7 @@ from wedgesweep.figures.panels import Panels, Target
 
 NAME = "decays"
 DESCRIPTION = "motion in time and the size of its swings, measured and simulated, and what the models leave"
+TESTS = "transient"
 
 # Of a longer motion the beginning is drawn: more would run together.
 SWINGS = 40
@@ -89,9 +90,6 @@ def draw(target: Target, result: DiagnosisResult, tests: Sequence[int] | None = 
     share each time. Below, what the models leave, over the grey band of the noise: a difference that
     grows and turns over is a frequency that is off.
     """
-    if "time" not in result.data:
-        message = "the tests are no transients"
-        raise ValueError(message)
     made = multiples(target, result, selection.choose(result, tests), (2.9, 1.15), 3, between=0.42)
     cut = False
     for test, (motion, sizes, left) in made:

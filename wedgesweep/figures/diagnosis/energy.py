@@ -7,6 +7,7 @@ from wedgesweep.figures.panels import Panels, Target
 
 NAME = "energy"
 DESCRIPTION = "energy per cycle, measured and simulated"
+TESTS = "steady"
 
 MJ = 1e3  # mJ per J
 

@@ -14,6 +14,7 @@ from wedgesweep.figures.panels import Panels, Target
 
 NAME = "harmonics"
 DESCRIPTION = "harmonics of displacement and velocity with noise bars, measured and simulated"
+TESTS = "steady"
 
 LABELS = {"displacement": "$|D_h|$ [mm]", "velocity": "$|V_h|$ [mm/s]"}
 DECADES_BELOW_NOISE = 0.5

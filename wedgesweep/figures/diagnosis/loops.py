@@ -12,6 +12,7 @@ from wedgesweep.figures.panels import Panels, Target
 
 NAME = "loops"
 DESCRIPTION = "force over the imposed displacement, and what the models leave of it over velocity"
+TESTS = "loop"
 
 
 def _draw_loop(ax: Axes, result: DiagnosisResult, test: int) -> None:
@@ -40,9 +41,6 @@ def draw(target: Target, result: DiagnosisResult, tests: Sequence[int] | None = 
     models leave: a step at zero velocity is dry friction, a slope over velocity a damper, a slope or
     curve over displacement a spring, a slope on one side only a damper that depends on the direction.
     """
-    if "measured_force" not in result.data:
-        message = "the tests are no loops"
-        raise ValueError(message)
     made = multiples(target, result, selection.choose(result, tests), (2.5, 1.5), 2, between=0.46)
     for test, (loop, left) in made:
         _draw_loop(loop, result, test)

@@ -13,6 +13,7 @@ from wedgesweep.figures.panels import Panels, Target, panels
 
 NAME = "misfit"
 DESCRIPTION = "misfit over noise of every test and harmonic, before and after"
+TESTS = "steady"
 
 LARGEST = 1e3  # in units of noise; beyond it the colour stays
 # Pale where nothing is wrong: on paper, and with light and dark exchanged on a dark page.

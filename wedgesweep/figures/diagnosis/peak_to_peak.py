@@ -9,6 +9,7 @@ from wedgesweep.figures.panels import Panels, Target, panels
 
 NAME = "swing"
 DESCRIPTION = "peak-to-peak over frequency, measured and simulated"
+TESTS = "steady"
 
 ALIKE = 0.1  # amplitudes this close, relatively, are joined by a line
 

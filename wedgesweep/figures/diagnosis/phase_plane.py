@@ -13,6 +13,7 @@ from wedgesweep.figures.panels import Panels, Target
 
 NAME = "phase-plane"
 DESCRIPTION = "velocity over displacement, measured and simulated"
+TESTS = "steady"
 
 
 def _draw(ax: Axes, result: DiagnosisResult, test: int) -> None:

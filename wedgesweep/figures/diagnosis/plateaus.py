@@ -9,6 +9,7 @@ from wedgesweep.figures.panels import Panels, Target
 
 NAME = "plateaus"
 DESCRIPTION = "share of the period near zero velocity, measured and simulated"
+TESTS = "steady"
 
 # A sine stays below 5 % of its peak for this share of its period.
 SINE = 2.0 * np.arcsin(0.05) / np.pi

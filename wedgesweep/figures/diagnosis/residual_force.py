@@ -15,6 +15,7 @@ from wedgesweep.figures.panels import Panels, Target
 
 NAME = "leftover-force"
 DESCRIPTION = "force that the base model lacks, over displacement and velocity"
+TESTS = "steady"
 
 PARTS = 16  # of the period, a colour each
 PALE = "0.7"

@@ -17,6 +17,7 @@ from wedgesweep.figures.panels import Panels, Target, panels
 
 NAME = "spectrogram"
 DESCRIPTION = "frequencies over time of the measured motion, and of what the models leave"
+TESTS = "transient"
 
 RECORDS_SHOWN = 4  # records
 FEWEST = 1024  # samples of a record
@@ -134,9 +135,6 @@ def draw(target: Target, result: DiagnosisResult, tests: Sequence[int] | None = 
     line of the measured motion is a wrong amplitude or phase, what it leaves at multiples of it is
     friction, a stop or play.
     """
-    if "measured" not in result.data:
-        message = "the tests are no transients"
-        raise ValueError(message)
     long = _long(result, tests)[:RECORDS_SHOWN]
     if not long:
         message = f"no record has {FEWEST} samples or more"

@@ -14,6 +14,7 @@ from wedgesweep.figures.panels import Panels, Target
 
 NAME = "waveforms"
 DESCRIPTION = "displacement and velocity over one period, measured and simulated, and the difference"
+TESTS = "steady"
 
 UM = 1e6  # of a metre
 

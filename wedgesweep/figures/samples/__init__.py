@@ -3,4 +3,3 @@
 from wedgesweep.figures import catalogue
 
 FIGURES = catalogue.declared(__path__[0], __name__)
-DESCRIPTIONS = {name: kind.description for name, kind in FIGURES.items()}
