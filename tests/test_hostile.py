@@ -115,7 +115,7 @@ def test_whatever_netcdf4_raises_the_file_is_damaged(here, monkeypatch):
     (here / "small.nc").write_bytes(b"\x89HDF\r\n\x1a\n")
 
     def raises(*arguments, **options):
-        raise AttributeError("'NoneType' object has no attribute 'dimensions'")  # noqa: EM101
+        raise AttributeError("'NoneType' object has no attribute 'dimensions'")
 
     monkeypatch.setattr(netCDF4, "Dataset", raises)
     assert "Error: small.nc: " in invoke("status", "small.nc", code=2)

@@ -32,8 +32,7 @@ logging.getLogger(__name__).addHandler(logging.NullHandler())
 def __getattr__(name: str) -> Any:
     """The functions of ``wedgesweep.api``; numba and xarray load when the first of them is used."""
     if name not in __all__:
-        message = f"module {__name__!r} has no attribute {name!r}"
-        raise AttributeError(message)
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     from wedgesweep import api
 
     return getattr(api, name)

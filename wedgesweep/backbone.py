@@ -89,8 +89,9 @@ def turning_points(time: np.ndarray, signal: np.ndarray, noise: float) -> Turns:
     if places.size > 1:
         places = places[int(np.argmax(np.abs(np.diff(signal[places])))) :]
     if places.size < 3:
-        message = f"has {places.size} turning points that stand out of the noise; a backbone needs three"
-        raise ValueError(message)
+        raise ValueError(
+            f"has {places.size} turning points that stand out of the noise; a backbone needs three"
+        )
     offsets = np.arange(-half, half + 1)
     solve = np.linalg.pinv(np.vander(offsets, 3, increasing=True))
     std = noise * np.linalg.norm(solve, axis=1)

@@ -46,8 +46,7 @@ def engineering(ds: xr.Dataset) -> xr.Dataset:
     """The dataset of a sweep with those of QUANTITIES that it has data for; see ``api.engineering``."""
     config = configs.parse(ds.attrs["config"])
     if config.system != SUSPENSION:
-        message = "load, snubbing and unloading are those of a suspension; this is an oscillator"
-        raise ValueError(message)
+        raise ValueError("load, snubbing and unloading are those of a suspension; this is an oscillator")
     models = _Models.of(ds, config)
     found = _of_model(models)
     if "scale" not in ds.coords:
@@ -72,8 +71,7 @@ def with_quantities(ds: xr.Dataset, names: Iterable[str]) -> xr.Dataset:
     for name in asked:
         if name not in found:
             needs = "an input that repeats" if name in OF_CYCLE else WAVEFORMS
-            message = f"{name}: needs {needs}"
-            raise ValueError(message)
+            raise ValueError(f"{name}: needs {needs}")
     return found
 
 

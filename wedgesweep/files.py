@@ -74,11 +74,9 @@ def json_object(text: str | bytes) -> dict[str, Any]:
     try:
         found = json.loads(text)
     except RecursionError as error:
-        message = "nested too deeply"
-        raise ValueError(message) from error
+        raise ValueError("nested too deeply") from error
     if not isinstance(found, dict):
-        message = "not a JSON object"
-        raise ValueError(message)
+        raise ValueError("not a JSON object")
     return found
 
 

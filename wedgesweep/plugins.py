@@ -116,12 +116,10 @@ def _module(file: Path, shown: str) -> ModuleType:
     """Run a file as a module of its own name."""
     name = file.stem
     if not name.isidentifier() or name in sys.modules or name in KNOWN:
-        message = f"{shown}: {name} is no free name of a Python module; rename the file"
-        raise InputError([message])
+        raise InputError([f"{shown}: {name} is no free name of a Python module; rename the file"])
     spec = spec_from_file_location(name, file)
     if spec is None or spec.loader is None:
-        message = f"{shown}: not a Python file; its name must end with .py"
-        raise InputError([message])
+        raise InputError([f"{shown}: not a Python file; its name must end with .py"])
     module = sys.modules[name] = module_from_spec(spec)
     try:
         spec.loader.exec_module(module)

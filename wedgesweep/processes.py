@@ -60,8 +60,7 @@ def apart(function: Callable[..., Any], *arguments: Any) -> Any:
             raise EOFError
         found = receiving.recv()
     except EOFError as error:
-        message = "damaged: the library that reads it gave up, or found no end"
-        raise OSError(message) from error
+        raise OSError("damaged: the library that reads it gave up, or found no end") from error
     finally:
         process.kill()
         process.join()

@@ -37,8 +37,7 @@ class _Symbol:
         return _Symbol(self.builder, self.builder.call(absolute, [self.value]))
 
     def __bool__(self) -> bool:
-        message = "a traced function decides nothing by the value of a number"
-        raise TypeError(message)
+        raise TypeError("a traced function decides nothing by the value of a number")
 
     __add__ = partialmethod(_operation, name="fadd")
     __sub__ = partialmethod(_operation, name="fsub")

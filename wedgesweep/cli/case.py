@@ -57,19 +57,16 @@ def case(
     """
     beta, frequency, amplitude, force = (sine[key] for key in ("beta", "frequency", "amplitude", "force"))
     if (beta is None) == (frequency is None):
-        message = "give either --beta or --frequency"
-        raise click.UsageError(message)
+        raise click.UsageError("give either --beta or --frequency")
     if (amplitude is None) == (force is None):
-        message = "give either --amplitude or --force"
-        raise click.UsageError(message)
+        raise click.UsageError("give either --amplitude or --force")
     from wedgesweep.config import load
     from wedgesweep.config.variants import single_case
 
     given = load(config_path)
     if given.forced != (force is not None):
         wanted = "a force: give --force" if given.forced else "a motion: give --amplitude"
-        message = f"{config_path}: its input is {wanted}"
-        raise Failure(message)
+        raise Failure(f"{config_path}: its input is {wanted}")
     if given.turns and amplitude is not None:
         amplitude *= 1e3  # a rotation's rad is a length of 1 m
     settings = single_case(given, amplitude, beta, frequency, law, force, _numbers(at))
@@ -92,8 +89,9 @@ def _numbers(at: tuple[str, ...]) -> dict[str, float]:
     """Numbers of the model, by dotted key; their names are checked with the config."""
     numbers = {name: value for name, value in axis_values(at).items() if isinstance(value, float)}
     if len(numbers) < len(at):
-        message = "--at: a number is needed after each key, as in --at suspension.wedge_angle_deg=30"
-        raise click.UsageError(message)
+        raise click.UsageError(
+            "--at: a number is needed after each key, as in --at suspension.wedge_angle_deg=30"
+        )
     return numbers
 
 
@@ -132,8 +130,7 @@ def _require_no_sweep(path: Path) -> None:
         return
     found = dataset.read(path)
     if "status" not in found or found["status"].size > 1:
-        message = f"{path}: holds a sweep or other data; choose another -o"
-        raise Failure(message)
+        raise Failure(f"{path}: holds a sweep or other data; choose another -o")
 
 
 def _print_numbers(ds: "xr.Dataset") -> None:

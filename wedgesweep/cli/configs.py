@@ -49,12 +49,10 @@ def init(paths: tuple[Path, ...], files: tuple[Path, ...], force: bool) -> None:
 def _output(paths: list[Path], force: bool) -> Path:
     """The one path to write to."""
     if len(paths) > 1:
-        message = f"Got unexpected extra argument ({paths[1]})"
-        raise click.UsageError(message)
+        raise click.UsageError(f"Got unexpected extra argument ({paths[1]})")
     path = OutputPath(TOML, allow_dash=True).convert(paths[0], None, click.get_current_context())
     if path.exists() and not force:
-        message = f"{path}: exists; --force overwrites it"
-        raise Failure(message)
+        raise Failure(f"{path}: exists; --force overwrites it")
     return path
 
 

@@ -94,11 +94,9 @@ def _variables_of(ds: "xr.Dataset", chosen: Sequence[str] | None) -> list[str]:
     for name in chosen:
         samples = [ds.sizes[dim] for dim in SAMPLED if name in ds.data_vars and dim in ds[name].dims]
         if samples:
-            message = f"{name}: a waveform of {samples[0]} samples a case; read it with xarray"
-            raise Failure(message)
+            raise Failure(f"{name}: a waveform of {samples[0]} samples a case; read it with xarray")
         if name not in (*scalar, *spectra, *ds.coords):
-            message = f"{name}: no such variable; valid here: {', '.join((*scalar, *spectra))}"
-            raise Failure(message)
+            raise Failure(f"{name}: no such variable; valid here: {', '.join((*scalar, *spectra))}")
     return [name for name in dict.fromkeys(chosen) if name not in ds.coords]
 
 

@@ -50,8 +50,7 @@ def _choose(ctx: click.Context, param: click.Parameter, given: bool) -> None:
     if not given:
         return
     if log.level != logging.INFO:
-        message = "--quiet and --verbose contradict each other; leave one out"
-        raise click.UsageError(message)
+        raise click.UsageError("--quiet and --verbose contradict each other; leave one out")
     log.setLevel(logging.WARNING if param.name == "quiet" else logging.DEBUG)
 
 

@@ -97,8 +97,7 @@ def axis_values(texts: Iterable[str]) -> dict[str, float | str]:
     for text in texts:
         name, equals, value = text.partition("=")
         if not (name and equals):
-            message = f"--at {text}: not AXIS=VALUE"
-            raise click.UsageError(message)
+            raise click.UsageError(f"--at {text}: not AXIS=VALUE")
         try:
             values[name] = float(value)
         except ValueError:
@@ -173,11 +172,9 @@ def require_place_for(directory: Path) -> None:
     while not place.exists():
         place = place.parent
     if not place.is_dir():
-        message = f"{place}: not a directory"
-        raise Failure(message)
+        raise Failure(f"{place}: not a directory")
     if not os.access(place, os.W_OK):
-        message = f"{place}: cannot be written to"
-        raise Failure(message)
+        raise Failure(f"{place}: cannot be written to")
 
 
 def command_line() -> str:

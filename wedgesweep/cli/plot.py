@@ -96,8 +96,7 @@ POSITIVE = FiniteRange(min=0.0, min_open=True)
 def plot(ctx: click.Context, kind: str, path: Path, output: Path | None, suffix: str, **picks: Any) -> None:
     """Draw a figure."""  # the text of --help is HELP
     if None not in (picks["beta"], picks["frequency"]):
-        message = "give either --beta or --frequency"
-        raise click.UsageError(message)
+        raise click.UsageError("give either --beta or --frequency")
     if kind == ALL:
         directory, found = output or _beside(path), _read(path)
         require_place_for(directory)
@@ -106,8 +105,7 @@ def plot(ctx: click.Context, kind: str, path: Path, output: Path | None, suffix:
         return
     asked = ctx.get_parameter_source("suffix") is not ParameterSource.DEFAULT
     if output and asked and output.suffix.lower() != f".{suffix}":
-        message = f"--format {suffix} and -o {output} contradict each other; leave one out"
-        raise click.UsageError(message)
+        raise click.UsageError(f"--format {suffix} and -o {output} contradict each other; leave one out")
     file = output or _beside(path) / f"{kind}.{suffix}"
     _require_place(file)
     try:
@@ -176,8 +174,7 @@ def _options(found: "Data", picks: dict[str, Any]) -> dict[str, Any]:
     for name in units.keys() & given.keys():
         pick, values = units[name], given.pop(name)
         if pick.variable not in found.coords:
-            message = f"--{name}: the dataset has no {pick.variable}"
-            raise Failure(message)
+            raise Failure(f"--{name}: the dataset has no {pick.variable}")
         several = isinstance(values, tuple)
         for value in values if several else (values,):
             _warn_unless_there(found, name, value, pick)
@@ -222,11 +219,9 @@ def _listed(values: "np.ndarray") -> str:
 def _require_place(file: Path) -> None:
     """Check before the drawing that the file can be written."""
     if file.suffix.lower() not in FORMATS:
-        message = f"{file}: the suffix must be one of {', '.join(FORMATS)}"
-        raise Failure(message)
+        raise Failure(f"{file}: the suffix must be one of {', '.join(FORMATS)}")
     if not file.parent.is_dir() or not os.access(file.parent, os.W_OK):
-        message = f"{file.parent}: not a directory that can be written to"
-        raise Failure(message)
+        raise Failure(f"{file.parent}: not a directory that can be written to")
 
 
 def _draw_all(found: "Data", directory: Path, suffix: str, options: dict[str, Any]) -> None:
@@ -238,8 +233,7 @@ def _draw_all(found: "Data", directory: Path, suffix: str, options: dict[str, An
         except ValueError as error:
             log.info(f"skipped {error}")
     if not drawn:
-        message = "no figure suits this dataset"
-        raise Failure(message)
+        raise Failure("no figure suits this dataset")
 
 
 def _draw(kind: str, found: "Data", file: Path, options: dict[str, Any], strict: bool = True) -> None:
@@ -257,11 +251,10 @@ def _draw(kind: str, found: "Data", file: Path, options: dict[str, Any], strict:
     except DAMAGE as error:
         if not of_diagnosis:  # whose content has been checked
             raise
-        message = (
+        raise ValueError(
             f"{kind}: diagnosis.json or diagnosis.nc is not as a diagnosis writes it "
             f"({type(error).__name__}: {error})"
-        )
-        raise ValueError(message) from error
+        ) from error
     click.echo(f"wrote {file}")
 
 
@@ -273,13 +266,11 @@ def _accepted(kind: str, names: tuple[str, ...], options: dict[str, Any], strict
             accepted["amplitudes"] = value
         elif name == "amplitude" and name in names:
             if len(value) > 1:
-                message = f"{kind}: takes a single --amplitude"
-                raise ValueError(message)
+                raise ValueError(f"{kind}: takes a single --amplitude")
             accepted[name] = value[0]
         elif name in names:
             accepted[name] = value
         elif strict:
             asked = "--beta and no --frequency" if name == "beta" else f"--{name}"
-            message = f"{kind}: takes no {asked}"
-            raise ValueError(message)
+            raise ValueError(f"{kind}: takes no {asked}")
     return accepted

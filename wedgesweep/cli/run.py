@@ -108,8 +108,7 @@ def run(
         )
         ctx.exit(SOME_FAILED)
     except MismatchError as error:
-        message = f"{error}; choose another -o to keep it, or --fresh to discard it"
-        raise Failure(message) from error
+        raise Failure(f"{error}; choose another -o to keep it, or --fresh to discard it") from error
     if count is not None:
         code = max(code, print_verification(sweep, result, count, seed, jobs))
     ctx.exit(code)
@@ -129,22 +128,19 @@ def _settings(config_path: Path, solver: str | None) -> "Config":
 def _require_sine(settings: "Config", config_path: Path) -> None:
     """Refuse to verify responses to an input that does not repeat."""
     if settings.transient:
-        message = (
+        raise Failure(
             f"{config_path}: --verify compares responses to a sine, and this input does not repeat; "
             "run it again with --solver radau and another -o"
         )
-        raise Failure(message)
 
 
 def _require_consistent(backend: str | None, scheduler: str | None, n_jobs: int | None) -> None:
     if scheduler is None:
         return
     if backend != "dask":
-        message = "--scheduler needs --backend dask"
-        raise click.UsageError(message)
+        raise click.UsageError("--scheduler needs --backend dask")
     if n_jobs is not None:
-        message = "--n-jobs has no effect with --scheduler, whose cluster has its own workers"
-        raise click.UsageError(message)
+        raise click.UsageError("--n-jobs has no effect with --scheduler, whose cluster has its own workers")
 
 
 def _backend(name: str | None, scheduler: str | None) -> "Backend | None":

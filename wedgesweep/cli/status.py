@@ -26,8 +26,7 @@ def status(ctx: click.Context, path: Path) -> None:
     OUT is the dataset that it writes, or has written.
     """
     if path.is_dir():
-        message = f"{path}: a directory; give the dataset of a run"
-        raise Failure(message)
+        raise Failure(f"{path}: a directory; give the dataset of a run")
     from wedgesweep.sweep.dataset import journal_of
 
     ctx.exit(_unfinished(path) if journal_of(path).exists() else _finished(path))

@@ -41,8 +41,7 @@ def require_confirmed(sweep: "Sweep", n_jobs: int, confirmed: bool) -> None:
     """Refuse a sweep of very many cases, with what it would cost, unless that was confirmed."""
     if sweep.count > MANY and not confirmed:
         print_cost(sweep, n_jobs)
-        message = f"{sweep.count} cases are more than {MANY}: --yes runs them all the same"
-        raise Failure(message)
+        raise Failure(f"{sweep.count} cases are more than {MANY}: --yes runs them all the same")
 
 
 def print_summary(ds: "xr.Dataset") -> int:

@@ -139,7 +139,7 @@ class Number(Key):
 
     @classmethod
     def of(cls, quantity: Quantity, **more: Any) -> Self:
-        """Key of a quantity; a default that is not finite (a limit) is no default. ``more`` takes precedence."""
+        """Key of a quantity, but for what ``more`` says; a default that is not finite (a limit) is none."""
         default = quantity.default if isfinite(quantity.default) else None
         own = {"key": quantity.key, "meaning": quantity.meaning, "default": default}
         return cls(quantity=quantity, **(own | more))

@@ -42,8 +42,7 @@ def single_case(
     }
     grid = {key: value for key, value in given.items() if value is not None}
     if config.transient:
-        problem = "input: a single case is of a sine; remove [input], or use 'wedgesweep run'"
-        raise ConfigError([problem])
+        raise ConfigError(["input: a single case is of a sine; remove [input], or use 'wedgesweep run'"])
     solver = config.document["solver"] | {"keep_waveforms": True, "continuation": False}
     document = with_numbers(config.document, numbers) | {"sweep": grid, "solver": solver}
     return from_document(Config(document).written, "case")

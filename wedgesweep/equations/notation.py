@@ -88,8 +88,7 @@ def _read(text: str) -> Element:
     reader = _Reader(text)
     found = reader.row("")
     if reader.sign:
-        message = f"{text!r}: nothing opens the '{reader.sign}'"
-        raise ValueError(message)
+        raise ValueError(f"{text!r}: nothing opens the '{reader.sign}'")
     return found
 
 
@@ -157,8 +156,7 @@ class _Reader:
         """Go on to the next token."""
         self.token = TOKEN.match(self.text, self.place) if self.text[self.place :].strip() else None
         if self.token is None and self.text[self.place :].strip():
-            message = f"{self.text!r}: cannot read {self.text[self.place :].strip()!r}"
-            raise ValueError(message)
+            raise ValueError(f"{self.text!r}: cannot read {self.text[self.place :].strip()!r}")
         if self.token is not None:
             self.place = self.token.end()
 
@@ -195,8 +193,7 @@ class _Reader:
     def single(self) -> Element:
         token = self.token
         if token is None or (self.sign and self.sign not in BRACKETS):
-            message = f"{self.text!r}: something is missing before {self.sign or 'the end'!r}"
-            raise ValueError(message)
+            raise ValueError(f"{self.text!r}: something is missing before {self.sign or 'the end'!r}")
         if self.sign:
             return self.group()
         self.advance()
@@ -212,12 +209,10 @@ class _Reader:
         opening = self.sign
         closing = BRACKETS.get(opening)
         if closing is None:
-            message = f"{self.text!r}: a bracket is missing"
-            raise ValueError(message)
+            raise ValueError(f"{self.text!r}: a bracket is missing")
         self.advance()
         content = self.row(closing)
         if self.sign != closing:
-            message = f"{self.text!r}: '{opening}' is not closed"
-            raise ValueError(message)
+            raise ValueError(f"{self.text!r}: '{opening}' is not closed")
         self.advance()
         return _bracketed(opening, content)

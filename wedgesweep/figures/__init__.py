@@ -93,8 +93,7 @@ def draw(data: "Data", name: str, ax: "Axes | None" = None, **picks: Any) -> "Fi
             named = (str(checked.attrs.get(name, "")) for name in ("title", "model"))
             panels.head("; ".join(filter(None, named)))
     except ValueError as error:
-        message = f"{name}: {error}"
-        raise ValueError(message) from error
+        raise ValueError(f"{name}: {error}") from error
     whole = panels.figure.figure  # of a subfigure: the figure that it is part of
     if _turns(data):
         _relabel(panels.figure)
@@ -157,8 +156,7 @@ def options(kind: catalogue.FigureKind) -> tuple[str, ...]:
 def _require_known(picks: Mapping[str, Any], known: Sequence[str]) -> None:
     for name in picks:
         if name not in known:
-            message = f"unknown option '{name}'; it takes {', '.join(known) or 'no options'}"
-            raise ValueError(message)
+            raise ValueError(f"unknown option '{name}'; it takes {', '.join(known) or 'no options'}")
 
 
 def of(data: "Data") -> dict[str, catalogue.FigureKind]:
@@ -179,8 +177,7 @@ def kind_of(data: "Data", name: str) -> catalogue.FigureKind:
     """Return the figure of a name; raises ValueError if it does not draw such data."""
     kinds = of(data)
     if name not in kinds:
-        message = f"no figure '{name}' of these data; there are {', '.join(kinds)}"
-        raise ValueError(message)
+        raise ValueError(f"no figure '{name}' of these data; there are {', '.join(kinds)}")
     return kinds[name]
 
 
@@ -195,8 +192,7 @@ def save(figure: "Figure", path: str | Path) -> None:
     path = Path(path)
     if path.suffix.lower() not in FORMATS:
         valid = ", ".join(FORMATS)
-        message = f"{path}: cannot write '{path.suffix}'; the suffix must be one of {valid}"
-        raise ValueError(message)
+        raise ValueError(f"{path}: cannot write '{path.suffix}'; the suffix must be one of {valid}")
     with written(path) as temporary:
         figure.savefig(temporary, format=path.suffix.lower()[1:], dpi=DOTS_PER_INCH)
 

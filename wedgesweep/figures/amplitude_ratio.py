@@ -126,8 +126,7 @@ def draw(target: Target, ds: xr.Dataset) -> Panels:
     """Draw a panel per law, the input amplitude as colour, the frictionless response dashed."""
     words = labels.of(ds)
     if not ds["amplitude"].all():
-        message = "needs an input amplitude that the response can be compared with; there is one of 0"
-        raise ValueError(message)
+        raise ValueError("needs an input amplitude that the response can be compared with; there is one of 0")
     norm = _amplitude_norm(ds["amplitude"].values * words.factor)
     top = 1.5 * float(np.fmax(ds["amplitude_ratio"].max(), 1.5))
     made, parts = per_law(target, ds, size=(3.3, 3.8))

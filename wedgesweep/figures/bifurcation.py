@@ -65,8 +65,9 @@ def _draw_law(ax: Axes, law: xr.Dataset, scale: np.ndarray) -> bool:
 def draw(target: Target, ds: xr.Dataset, amplitude: float | None = None) -> Panels:
     """Draw a panel per law at the amplitude (m) nearest to the given one (default: the middle)."""
     if ds.sizes["beta"] < FEWEST_BETAS:
-        message = f"needs {FEWEST_BETAS} frequencies or more to show branches; there are {ds.sizes['beta']}"
-        raise ValueError(message)
+        raise ValueError(
+            f"needs {FEWEST_BETAS} frequencies or more to show branches; there are {ds.sizes['beta']}"
+        )
     place = ds.sizes["amplitude"] // 2 if amplitude is None else cases.nearest(ds["amplitude"], amplitude)[0]
     ds = ds.isel(amplitude=place)
     words, scale = labels.of(ds), _half_swing(ds)

@@ -20,17 +20,15 @@ def checked(ds: xr.Dataset, needs: Sequence[str], case_lists: bool) -> xr.Datase
     stays one, if the figure draws such lists.
     """
     if "case" in ds.dims and not case_lists:
-        message = (
+        raise ValueError(
             "needs a grid of friction_law, beta and amplitude, "
             "but this dataset is a list of cases; phase-portrait draws such a list"
         )
-        raise ValueError(message)
     missing = [name for name in needs if name not in ds.variables and name not in ds.attrs]
     if missing:
         waveforms = {"displacement", "velocity", "stuck"} & set(missing)
         hint = "; run the sweep again with keep_waveforms = true" if waveforms else ""
-        message = f"the dataset has no {', '.join(missing)}{hint}"
-        raise ValueError(message)
+        raise ValueError(f"the dataset has no {', '.join(missing)}{hint}")
     if "scale" in ds.coords:
         return ds.expand_dims([name for name in ("scale", "friction_law") if ds[name].ndim == 0])
     single = [name for name in ("amplitude", "beta", "friction_law") if ds[name].ndim == 0]
@@ -49,8 +47,7 @@ def of_law(ds: xr.Dataset, law: str) -> xr.Dataset:
     """Select the cases of a law, in capitals or not; raises ValueError if there are none."""
     present = laws(ds)
     if law.lower() not in present:
-        message = f"no friction law '{law}' in the dataset; it has " + ", ".join(present)
-        raise ValueError(message)
+        raise ValueError(f"no friction law '{law}' in the dataset; it has " + ", ".join(present))
     if "friction_law" in ds.dims:
         return ds.sel(friction_law=[law.lower()])
     return ds.isel(case=ds["friction_law"].values == law.lower()) if "case" in ds.dims else ds
@@ -68,8 +65,7 @@ def nearest(there: xr.DataArray, wanted: ArrayLike) -> np.ndarray:
         if abs(values[place] - value) > FAR * abs(value):
             unit = there.attrs.get("units", "1").replace("1", "")
             span = f"{values.min():.4g} to {values.max():.4g} {unit}".rstrip()
-            message = f"no {there.name} near {value:.4g}; the dataset has {values.size} from {span}"
-            raise ValueError(message)
+            raise ValueError(f"no {there.name} near {value:.4g}; the dataset has {values.size} from {span}")
         places.append(place)
     return np.unique(places)
 

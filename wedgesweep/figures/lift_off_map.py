@@ -30,8 +30,7 @@ def _draw_law(ax: Axes, law: xr.Dataset, edges: Edges) -> QuadMesh:
 def draw(target: Target, ds: xr.Dataset) -> Panels:
     """Draw a panel per law."""
     if ds[LIFT_OFF].notnull().any() and not (ds[LIFT_OFF] > 0.0).any():
-        message = f"nothing lifts off in these cases: {LIFT_OFF} is never above 0"
-        raise ValueError(message)
+        raise ValueError(f"nothing lifts off in these cases: {LIFT_OFF} is never above 0")
     made, mesh = panel_per_law(target, ds, _draw_law)
     opens = OPENS in ds
     made.colorbar(mesh, "share of a period [1]" if opens else "share of the slipping time [1]")

@@ -38,8 +38,7 @@ def draw(
     """Draw a variable over the axes ``x`` and ``y``; by default the two longest."""
     ds, layout = over_axes.laid_out(ds, x, y, facet, at, numbers=True)
     if layout.other is None:
-        message = "needs two axes with several values"
-        raise ValueError(message)
+        raise ValueError("needs two axes with several values")
     shown = over_axes.variable_of(ds, variable)
     parts = over_axes.panels_of(ds, layout.facet)
     low, high = float(shown.min()), float(shown.max())

@@ -28,8 +28,7 @@ def of_one(ds: xr.Dataset, at: Mapping[str, Any] | None = None) -> xr.Dataset:
     ds = at_values(ds, at)
     models = [dim for dim in ds["status"].dims if dim not in OF_INPUT]
     if "sample" in models:
-        message = "needs a grid; these are samples"
-        raise ValueError(message)
+        raise ValueError("needs a grid; these are samples")
     found = ds.isel(default(ds, models))
     return _alone(found)
 
@@ -41,8 +40,7 @@ def at_values(ds: xr.Dataset, at: Mapping[str, Any] | None) -> xr.Dataset:
         if ds[place].ndim == 0:
             continue
         if ds[place].ndim > 1:
-            message = f"{name}: depends on {', '.join(map(str, ds[place].dims))}; pick one of these"
-            raise ValueError(message)
+            raise ValueError(f"{name}: depends on {', '.join(map(str, ds[place].dims))}; pick one of these")
         if ds[place].dtype.kind in "OUT":
             ds = cases.of_law(ds, str(value)).squeeze(ds[place].dims[0])
         else:
@@ -55,8 +53,7 @@ def coordinate(ds: xr.Dataset, name: str) -> str:
     of_cases = [str(each) for each in ds.coords if set(ds[each].dims) <= set(ds["status"].dims)]
     known = {ds[each].attrs.get("key", each): each for each in of_cases} | {each: each for each in of_cases}
     if name not in known:
-        message = f"no axis {name}; there are {', '.join(of_cases)}"
-        raise ValueError(message)
+        raise ValueError(f"no axis {name}; there are {', '.join(of_cases)}")
     return known[name]
 
 

@@ -36,8 +36,7 @@ def laid_out(
     there are no axes; raises ValueError.
     """
     if "case" in ds.dims or "sample" in ds.dims:
-        message = "needs axes; these are samples, or cases one by one"
-        raise ValueError(message)
+        raise ValueError("needs axes; these are samples, or cases one by one")
     ds = models.at_values(ds, at)
     asked = {
         name: models.coordinate(ds, each)
@@ -46,16 +45,13 @@ def laid_out(
     }
     for name in asked.values():
         if ds[name].ndim != 1:
-            message = f"{name}: is no axis with several values here"
-            raise ValueError(message)
+            raise ValueError(f"{name}: is no axis with several values here")
     for key, name in asked.items():
         if numbers and key != "facet" and not _has_numbers(ds, name):
-            message = f"{name}: has names, no numbers; give it to --facet"
-            raise ValueError(message)
+            raise ValueError(f"{name}: has names, no numbers; give it to --facet")
     taken = [ds[name].dims[0] for name in asked.values()]
     if len(set(taken)) < len(taken):
-        message = f"{', '.join(asked.values())}: these go together along one axis; choose others"
-        raise ValueError(message)
+        raise ValueError(f"{', '.join(asked.values())}: these go together along one axis; choose others")
     left = sorted((dim for dim in ds["status"].dims if dim not in taken), key=lambda dim: -ds.sizes[dim])
     numeric = [str(dim) for dim in left if _has_numbers(ds, str(dim))]
     chosen: dict[str, str | None] = {"x": asked.get("x") or next(iter(numeric), "beta")}
@@ -133,8 +129,7 @@ def variable_of(ds: xr.Dataset, name: str) -> xr.DataArray:
         if ds[each].dims == ds["status"].dims and ds[each].dtype.kind in "bfiu"
     ]
     if name not in numbers:
-        message = f"no variable {name} with a number for each case; there are {', '.join(numbers)}"
-        raise ValueError(message)
+        raise ValueError(f"no variable {name} with a number for each case; there are {', '.join(numbers)}")
     return ds[name]
 
 

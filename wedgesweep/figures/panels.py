@@ -139,7 +139,8 @@ def _fitting(labels: Sequence[str], most: int, room: float) -> int:
 
 def _embedded(ax: Axes, count: int) -> Panels:
     if count > 1:
-        message = f"{count} panels do not fit into one Axes; give a figure, or data for a single panel"
-        raise ValueError(message)
+        raise ValueError(
+            f"{count} panels do not fit into one Axes; give a figure, or data for a single panel"
+        )
     style.dress(ax)
     return Panels(ax.figure, [ax], embedded=True)

@@ -83,8 +83,7 @@ def draw(
     choose = _from_list if "case" in ds.dims else _from_grid
     found = choose(ds, beta, amplitudes)
     if not found:
-        message = "no case of the dataset has this beta and amplitude together"
-        raise ValueError(message)
+        raise ValueError("no case of the dataset has this beta and amplitude together")
     shown = found[:MOST_PANELS]
     columns = 3 if "case" in ds.dims else len(cases.laws(ds))
     made = panels(target, len(shown), columns=columns, size=(2.9, 2.5), share=False)

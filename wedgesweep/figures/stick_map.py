@@ -96,8 +96,9 @@ def _legend(made: Panels, ds: xr.Dataset) -> None:
 def draw(target: Target, ds: xr.Dataset) -> Panels:
     """Draw a panel per law, lift-off hatched, and the line above which coulomb slip begins."""
     if ds.sizes["amplitude"] < FEWEST_AMPLITUDES:
-        message = f"needs {FEWEST_AMPLITUDES} amplitudes or more for a map; there are {ds.sizes['amplitude']}"
-        raise ValueError(message)
+        raise ValueError(
+            f"needs {FEWEST_AMPLITUDES} amplitudes or more for a map; there are {ds.sizes['amplitude']}"
+        )
     made, mesh = panel_per_law(target, ds, _draw_law)
     for ax in made.axes:
         _draw_breakaway(ax, ds)

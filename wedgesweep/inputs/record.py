@@ -27,8 +27,9 @@ def digest(file: Path) -> str:
     try:
         return sha256(read_bytes(file)).hexdigest()
     except OSError as error:
-        problem = f"input.file: {shortened(file)}: {error.strerror}; give the path of a CSV file"
-        raise ConfigError([problem]) from error
+        raise ConfigError(
+            [f"input.file: {shortened(file)}: {error.strerror}; give the path of a CSV file"]
+        ) from error
 
 
 def columns(given: Mapping[str, Any]) -> tuple[np.ndarray, float]:
@@ -65,8 +66,9 @@ def _step(given: Mapping[str, Any], found: Mapping[str, np.ndarray]) -> float:
 def made(given: Mapping[str, Any], natural: float) -> Input:
     """The input of a table [input]."""
     if digest(Path(given["file"])) != given["sha256"]:
-        problem = f"input.sha256: {given['file']} has changed since; remove sha256 to read it as it is now"
-        raise ConfigError([problem])
+        raise ConfigError(
+            [f"input.sha256: {given['file']} has changed since; remove sha256 to read it as it is now"]
+        )
     values, step = columns(given)
     if given["quantity"] == "displacement":
         values = values - values[0]

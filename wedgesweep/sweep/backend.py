@@ -60,8 +60,9 @@ def in_order(tasks: Iterable[Any], n_jobs: int) -> list[Any]:
     try:
         return joblib.Parallel(**_processes(n_jobs))(tasks)
     except BrokenExecutor as error:
-        message = "a job died, killed or out of memory; run the same command again, with fewer --n-jobs"
-        raise SweepError(message) from error
+        raise SweepError(
+            "a job died, killed or out of memory; run the same command again, with fewer --n-jobs"
+        ) from error
 
 
 def _processes(n_jobs: int) -> dict[str, Any]:
@@ -103,8 +104,9 @@ def count_jobs(n_jobs: int | None) -> int:
     if n_jobs is None:
         return joblib.cpu_count()
     if isinstance(n_jobs, bool) or not isinstance(n_jobs, int | np.integer) or n_jobs < 1:
-        message = f"n_jobs: {n_jobs!r} is no number of jobs; write 1 or more, or None for one per processor"
-        raise SweepError(message)
+        raise SweepError(
+            f"n_jobs: {n_jobs!r} is no number of jobs; write 1 or more, or None for one per processor"
+        )
     return int(n_jobs)
 
 

@@ -30,8 +30,7 @@ def dask(
     Raises SweepError if there is no cluster, or if its workers run another version.
     """
     if importlib.util.find_spec("distributed") is None:
-        message = "the dask backend needs Dask: pip install 'wedgesweep[dask]'"
-        raise SweepError(message)
+        raise SweepError("the dask backend needs Dask: pip install 'wedgesweep[dask]'")
     from distributed import KilledWorker
 
     with ExitStack() as opened:
@@ -42,8 +41,9 @@ def dask(
             cores = sum(client.ncores().values())
             yield Pool(_solve(client, SENT_AHEAD * cores), cores, (KilledWorker,))
         except CancelledError as error:
-            message = f"the Dask cluster gave up: {error}; rerun the same command to resume"
-            raise SweepError(message) from error
+            raise SweepError(
+                f"the Dask cluster gave up: {error}; rerun the same command to resume"
+            ) from error
 
 
 def _local(opened: ExitStack, n_jobs: int) -> "Client":
@@ -88,8 +88,7 @@ def _connected(opened: ExitStack, scheduler: str) -> "Client":
         AssertionError,
     ) as error:  # TimeoutError is an OSError; an address is asserted
         reason = str(error) or f"no answer within {TIMEOUT:g} s"
-        message = f"{scheduler}: no Dask scheduler with a worker ({reason})"
-        raise SweepError(message) from error
+        raise SweepError(f"{scheduler}: no Dask scheduler with a worker ({reason})") from error
     return client
 
 
@@ -112,11 +111,9 @@ def _require_same(client: "Client", fingerprint: Callable[[], dict[str, str]]) -
     here = fingerprint()
     for worker, there in client.run(fingerprint, on_error="return").items():
         if isinstance(there, BaseException):
-            message = f"Dask worker {worker} cannot run wedgesweep: {there}"
-            raise SweepError(message) from there
+            raise SweepError(f"Dask worker {worker} cannot run wedgesweep: {there}") from there
         if differing := differences(there, here):
-            message = f"Dask worker {worker} would compute other numbers ({'; '.join(differing)})"
-            raise SweepError(message)
+            raise SweepError(f"Dask worker {worker} would compute other numbers ({'; '.join(differing)})")
 
 
 def _solve(client: "Client", ahead: int) -> Solve:

@@ -113,8 +113,7 @@ def write(dataset: "xr.Dataset", path: Path) -> None:
             RuntimeError,
             ValueError,
         ) as error:  # netCDF4 raises any of them, without a file name
-            message = f"{path}: cannot be written ({_reason(error)}); is the disk full?"
-            raise SweepError(message) from error
+            raise SweepError(f"{path}: cannot be written ({_reason(error)}); is the disk full?") from error
     log.debug("%s: written, %d bytes", path, path.stat().st_size)
 
 
@@ -125,26 +124,22 @@ def read(path: Path) -> "xr.Dataset":
     try:
         regular(path)
     except OSError as error:
-        message = f"{path}: {str(error.strerror).lower()}"
-        raise SweepError(message) from error
+        raise SweepError(f"{path}: {str(error.strerror).lower()}") from error
     import xarray as xr
 
     try:
         return xr.load_dataset(path, engine="netcdf4")
     except Exception as error:  # netCDF4 and the decoding of damaged content raise nearly anything
-        message = f"{path}: not a netCDF dataset, or damaged ({_reason(error)})"
-        raise SweepError(message) from error
+        raise SweepError(f"{path}: not a netCDF dataset, or damaged ({_reason(error)})") from error
 
 
 def read_sweep(path: Path) -> "xr.Dataset":
     """Load the dataset of a sweep; raises SweepError, also if it lacks what every sweep has."""
     if path.is_file() and not path.stat().st_size:
-        message = f"{path}: empty file; run --fresh replaces it"
-        raise SweepError(message)
+        raise SweepError(f"{path}: empty file; run --fresh replaces it")
     found = read(path)
     if faults := list(_faults(found)):
-        message = f"{path}: not the dataset of a sweep: {'; '.join(faults)}"
-        raise SweepError(message)
+        raise SweepError(f"{path}: not the dataset of a sweep: {'; '.join(faults)}")
     return found
 
 

@@ -127,8 +127,7 @@ def _locked(path: Path) -> int:
         replaced = not (path.exists() and os.path.samestat(os.fstat(file), path.stat()))
     except BlockingIOError as error:
         os.close(file)
-        message = f"{path}: another run is writing it; wait until it ends, or stop it"
-        raise SweepError(message) from error
+        raise SweepError(f"{path}: another run is writing it; wait until it ends, or stop it") from error
     if replaced:
         os.close(file)
         return _locked(path)
@@ -153,8 +152,9 @@ def _kept(path: Path, dtype: np.dtype, expected: dict[str, str]) -> tuple[int, n
         return 0, np.zeros(0, dtype)
     differing = differences(_header(path, content), expected)
     if differing:
-        message = f"{path}: an unfinished sweep with another config or version ({'; '.join(differing)})"
-        raise MismatchError(message)
+        raise MismatchError(
+            f"{path}: an unfinished sweep with another config or version ({'; '.join(differing)})"
+        )
     whole, records = _whole_records(content, content.index(b"\n") + 1, dtype)
     return whole, _latest(records)
 
@@ -185,8 +185,7 @@ def _content(path: Path) -> bytes:
     try:
         return read_bytes(path)
     except OSError as error:
-        message = f"{path}: {error.strerror}"
-        raise SweepError(message) from error
+        raise SweepError(f"{path}: {error.strerror}") from error
 
 
 def _latest(records: np.ndarray) -> np.ndarray:

@@ -126,8 +126,7 @@ class Sweep:
         kept = self._grown(_header(found), lambda dtype: growth.records_of(found, dtype))
         if kept is None:
             differing = "; ".join(differences(_header(found), self.journal_header))
-            message = f"{self.out}: holds another sweep ({differing})"
-            raise MismatchError(message)
+            raise MismatchError(f"{self.out}: holds another sweep ({differing})")
         return kept
 
     def _grown(self, header: dict[str, str], records: Callable[[np.dtype], np.ndarray]) -> np.ndarray | None:
@@ -275,8 +274,9 @@ class Sweep:
             return np.empty(self.count, self.dtype)
         except MemoryError as error:
             needed = f"{self.count * self.dtype.itemsize / 1e9:.3g} GB"
-            message = f"{self.count} cases need {needed} of memory; split the sweep into several configs"
-            raise SweepError(message) from error
+            raise SweepError(
+                f"{self.count} cases need {needed} of memory; split the sweep into several configs"
+            ) from error
 
     def _limit(self, case_timeout: float | None) -> float:
         return self.settings.case_timeout if case_timeout is None else case_timeout
@@ -286,8 +286,7 @@ class Sweep:
         if failed.size:
             case = self.config.sweep.case(failed[0]["index"])
             where = formatting.case(*case, unit=self.config.case_unit)
-            message = f"{where}: {failed[0]['message'].decode()}"
-            raise CaseFailedError(message)
+            raise CaseFailedError(f"{where}: {failed[0]['message'].decode()}")
 
     def assembled(self, records: np.ndarray, started: datetime) -> "xr.Dataset":
         """Assemble the dataset from the records of all cases."""
@@ -324,6 +323,7 @@ def _read_sweep(path: Path) -> "xr.Dataset":
     try:
         json_object(found.attrs["fingerprint"]), found.attrs["config"]
     except (KeyError, TypeError, ValueError) as error:
-        message = f"{path}: not the dataset of a sweep, as its fingerprint is missing; it is not overwritten"
-        raise SweepError(message) from error
+        raise SweepError(
+            f"{path}: not the dataset of a sweep, as its fingerprint is missing; it is not overwritten"
+        ) from error
     return found

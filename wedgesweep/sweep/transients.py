@@ -22,12 +22,10 @@ def solve_case(case: np.ndarray, settings: Settings, record: np.void) -> None:
     """Run a case, shape (1,), whose input amplitude is the scale, into a record. Raises CaseError."""
     given = settings.transient
     if given is None:
-        message = "settings without an input"
-        raise ValueError(message)
+        raise ValueError("settings without an input")
     run = simulate.transient(case, given, float(case["input"]["amplitude"][0]), settings)
     if not np.isfinite(run.samples.x).all():
-        message = "the motion is not finite"
-        raise CaseError(message, "not_finite")
+        raise CaseError("the motion is not finite", "not_finite")
     x, velocity = response.sensed(run.samples.x, run.samples.velocity, given.span / given.samples, case)
     waveforms = {
         "displacement": -x,

@@ -35,7 +35,6 @@ def _begun(out: Path) -> tuple[Sweep, np.ndarray]:
     header = journal.header(path)
     settings = config.parse(header["config"], str(path))
     if settings.sha256 != header["config_sha256"]:
-        message = f"{path}: damaged in its first line, whose config is not that of the records"
-        raise SweepError(message)
+        raise SweepError(f"{path}: damaged in its first line, whose config is not that of the records")
     sweep = Sweep(settings, out)
     return sweep, journal.read(path, sweep.dtype)

@@ -163,8 +163,7 @@ def _solved(task: _Task, rtol: float) -> Numbers:
     numbers = response.evaluate(run, task.record, variables.HARMONICS).numbers
     found = Numbers(float(numbers["amplitude_ratio"]), float(numbers["stick_fraction"]))
     if not all(map(isfinite, found)):
-        message = "the response is not finite"
-        raise CaseError(message, "not_finite")
+        raise CaseError("the response is not finite", "not_finite")
     return found
 
 

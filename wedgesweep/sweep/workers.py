@@ -71,8 +71,9 @@ class Workers:
             self.tell(TOLD)
         self._losses += 1
         if self._losses > MOST_LOSSES:
-            message = "workers keep dying, killed or out of memory; rerun the same command to resume"
-            raise SweepError(message) from error
+            raise SweepError(
+                "workers keep dying, killed or out of memory; rerun the same command to resume"
+            ) from error
 
     def _alone(self, rows: np.ndarray) -> Records:
         """Records of a chunk that is solved while nothing else runs, halved until one case is to blame."""

@@ -54,8 +54,7 @@ def draw(target: Target, result: DiagnosisResult) -> Panels:
     """
     rows = shown(result)
     if not rows:
-        message = "no candidate could be fitted"
-        raise ValueError(message)
+        raise ValueError("no candidate could be fitted")
     gap, least = (result.document["method"][key] for key in ("gap", "adequate_p"))
     behind = np.array([each["penalised"] for each in rows]) - min(each["penalised"] for each in rows)
     made = panels(target, 1, size=(6.2, 1.1 + 0.24 * len(rows)), margin=(0.8, 0.8))

@@ -24,13 +24,11 @@ def draw(target: Target, result: DiagnosisResult, tests: Sequence[int] | None = 
     steps where slip turns, under the same load, mean more friction.
     """
     if "measured_load" not in result.data:
-        message = "the load of the column was not recorded"
-        raise ValueError(message)
+        raise ValueError("the load of the column was not recorded")
     loads = result.data["measured_load"]
     there = [t for t in selection.choose(result, tests) if np.isfinite(loads.values[t]).any()]
     if not there:
-        message = "friction holds the bolster in these tests, and no load is determined"
-        raise ValueError(message)
+        raise ValueError("friction holds the bolster in these tests, and no load is determined")
     made = multiples(target, result, there, (2.5, 1.5))
     phase = np.linspace(0.0, 1.0, result.data.sizes["phase"] + 1)
     for test, (ax,) in made:

@@ -21,8 +21,7 @@ def draw(target: Target, result: DiagnosisResult) -> Panels:
     order, words = rows.known(result, "energy"), labels.of(result.data)
     if not order.size:
         known = "amplitude of the force" if words.forced else f"motion of the {words.base}"
-        message = f"no test has a known {known}, from which the energy follows"
-        raise ValueError(message)
+        raise ValueError(f"no test has a known {known}, from which the energy follows")
     made = rows.make_panels(target, result, order, 2)
     left, right = made.axes
     rows.draw_values(left, result, order, "energy", MJ)

@@ -50,8 +50,7 @@ def draw(target: Target, result: DiagnosisResult) -> Panels:
     """
     gain = result.gain
     if gain is None:
-        message = "no test was held out (there is no extended model, or there are too few tests)"
-        raise ValueError(message)
+        raise ValueError("no test was held out (there is no extended model, or there are too few tests)")
     held = gain["held_out"]
     schemes = [scheme for scheme in TITLES if any(each["scheme"] == scheme for each in held)]
     tested = {result.test_index(each["test"]) for each in held}

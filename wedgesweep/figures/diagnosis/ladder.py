@@ -94,8 +94,7 @@ def draw(target: Target, result: DiagnosisResult) -> Panels:
     """
     rows = rows_of(result)
     if not rows:
-        message = "no explanation has an accuracy; 'wedgesweep diagnose' of this version finds it"
-        raise ValueError(message)
+        raise ValueError("no explanation has an accuracy; 'wedgesweep diagnose' of this version finds it")
     lines = _lines(result)
     shown = [size for row in rows for size in (row.accuracy, row.held_out) if size and size > 0.0]
     shown += [value for value, _ in lines.values() if value > 0.0]

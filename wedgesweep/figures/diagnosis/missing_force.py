@@ -24,8 +24,7 @@ def draw(target: Target, result: DiagnosisResult) -> Panels:
     """
     data = result.data
     if "missing_force" not in data:
-        message = "no empirical force was fitted that predicts better than what has a name"
-        raise ValueError(message)
+        raise ValueError("no empirical force was fitted that predicts better than what has a name")
     words = labels.of(data)
     made = panels(target, 3, size=(3.4, 2.9), share=False)
     over_speed, over_place, both = made.axes

@@ -49,8 +49,7 @@ def draw(target: Target, result: DiagnosisResult, tests: Sequence[int] | None = 
     available = np.isfinite(data["leftover_force"].values).all(axis=-1)
     chosen = [test for test in selection.choose(result, tests) if available[test]]
     if not chosen:
-        message = f"the tests do not give the force on the {labels.of(data).body}"
-        raise ValueError(message)
+        raise ValueError(f"the tests do not give the force on the {labels.of(data).body}")
     words = labels.of(data)
     made = multiples(target, result, chosen, (2.5, 1.3), 2, between=0.46)
     for test, (upper, lower) in made:

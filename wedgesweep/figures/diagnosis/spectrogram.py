@@ -137,8 +137,7 @@ def draw(target: Target, result: DiagnosisResult, tests: Sequence[int] | None = 
     """
     long = _long(result, tests)[:RECORDS_SHOWN]
     if not long:
-        message = f"no record has {FEWEST} samples or more"
-        raise ValueError(message)
+        raise ValueError(f"no record has {FEWEST} samples or more")
     titles = ["measured", *(f"left by {name}" for name in marks.names(result).values())]
     columns = len(titles)
     made = panels(target, columns * len(long), columns=columns, size=(3.0, 2.1), share=False)

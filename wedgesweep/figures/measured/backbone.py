@@ -15,8 +15,7 @@ def draw(target: Target, measurement: Measurement) -> Panels:
     """Draw the backbone of the first response of every transient without an input."""
     free = [test for test in measurement.tests if test.kind == "transient" and test.input is None]
     if not free:
-        message = 'there is no ring-down: no test of kind = "transient" without an input'
-        raise ValueError(message)
+        raise ValueError('there is no ring-down: no test of kind = "transient" without an input')
     channel = next(iter(free[0].responses))
     size, unit = DISPLAY_UNITS[channel]
     colors = style.SEQUENTIAL(np.linspace(0.0, 1.0, len(free)))

@@ -39,18 +39,16 @@ def sobol_indices(values: np.ndarray, num: int) -> Indices:
     parts = parts[:, np.isfinite(parts).all(axis=0)]
     points = parts.shape[1]
     if points < LEAST_SHARE * num:
-        message = (
+        raise ValueError(
             f"{num - points} of {num} points lack a value; narrow the distributions, or draw another variable"
         )
-        raise ValueError(message)
     one, other, mixed = parts[0], parts[1], parts[2:]
     # The estimates do not depend on the mean, their scatter does.
     one, other, mixed = (each - 0.5 * (one.mean() + other.mean()) for each in (one, other, mixed))
     moments = np.stack([one + other, one**2 + other**2])
     terms = np.concatenate([moments, other * (mixed - one), 0.5 * (mixed - one) ** 2])
     if not moments[1].any():
-        message = "all samples have the same value"
-        raise ValueError(message)
+        raise ValueError("all samples have the same value")
     random, drawn = np.random.default_rng(SEED), []
     for _ in range(RESAMPLES // AT_A_TIME):
         weights = random.multinomial(points, np.full(points, 1.0 / points), AT_A_TIME) / points
@@ -91,8 +89,7 @@ def draw(
 
     given = config.parse(ds.attrs["config"]).document["sweep"].get("sample", {})
     if not given.get("indices"):
-        message = "needs [sweep.sample] with indices = true"
-        raise ValueError(message)
+        raise ValueError("needs [sweep.sample] with indices = true")
     over_axes.variable_of(ds, variable)
     names = [name for name in models.varied(ds) if ds[name].dims == ("sample",)]
     parts, chosen = over_axes.samples(ds, facet, at)

@@ -30,8 +30,7 @@ def draw(
     """Draw bands of percentiles of a variable, a panel for each law or each value of ``facet``."""
     over_axes.variable_of(ds, variable)
     if "sample" not in ds.dims:
-        message = "needs samples: [sweep.sample] in the config"
-        raise ValueError(message)
+        raise ValueError("needs samples: [sweep.sample] in the config")
     along = models.coordinate(ds, x or ("frequency" if "frequency" in ds.dims else "beta"))
     parts, chosen = over_axes.samples(ds, facet, at, along)
     made = panels(target, len(parts), size=(3.3, 3.2))

@@ -14,8 +14,7 @@ NEEDS = ("displacement", "time", "scale", "input")
 def draw(target: Target, ds: xr.Dataset, scale: float | None = None) -> Panels:
     """Draw a line per law at a scale, by default the largest."""
     if np.any(ds["input"].values):
-        message = "an input drives the motion; a backbone is that of a release"
-        raise ValueError(message)
+        raise ValueError("an input drives the motion; a backbone is that of a release")
     chosen = cases.one_scale(ds, scale)
     motions = [
         backbones.Motion(
