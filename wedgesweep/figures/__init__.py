@@ -103,7 +103,7 @@ def draw(data: "Data", name: str, ax: "Axes | None" = None, **picks: Any) -> "Fi
 def _of_tests(result: "DiagnosisResult", tests: str) -> "DiagnosisResult":
     """The part of a diagnosis with tests of a kind; raises ValueError if there are none."""
     part = result.of_kind(tests)
-    if tests and part.document["kind"] != tests:
+    if tests and part.document.get("kind", "steady") != tests:
         raise ValueError(LACKS[tests])
     return part
 
