@@ -12,7 +12,7 @@ from typing import Any, ClassVar, cast
 from llvmlite.binding import create_new_function_pass_manager
 from numba.core import compiler, event, sigutils, types
 from numba.core.codegen import JITCodeLibrary
-from numba.core.compiler_machinery import PassManager, register_pass
+from numba.core.compiler_machinery import LoweringPass, PassManager, register_pass
 from numba.core.registry import CPUDispatcher
 from numba.core.typed_passes import (
     IRLegalization,
@@ -136,22 +136,29 @@ class _InnerTypeInference(NopythonTypeInference):
             state.typingctx = shared
 
 
-class InnerCompiler(compiler.CompilerBase):
-    """numba's compiler, with the last step left to the callers.
+@register_pass(mutates_CFG=True, analysis_only=False)
+class _AllSteps(LoweringPass):
+    """The whole compilation of an inner function, as one of numba's passes.
 
-    It leaves out numba's passes for what these functions do without, each of which costs as much as lowering
-    a short function: closures, ``with``, array expressions, literals, raised exceptions.
+    What numba does around each pass (texts of types for events, clocks, checks) costs as much as some of
+    these steps. It leaves out steps for what these functions do without, each of which costs as much as
+    lowering a short function: closures, ``with``, array expressions, literals, raised exceptions.
     """
 
-    def define_pipelines(self) -> list:
-        pipeline = PassManager("inner")
-        for step in _PASSES:
-            pipeline.add_pass(step, step.__name__)
-        pipeline.finalize()
-        return [pipeline]
+    _name = "inner"
+
+    def __init__(self) -> None:
+        LoweringPass.__init__(self)
+
+    def run_pass(self, state: Any) -> bool:
+        for step in _STEPS:
+            # It marks where variables end: only references are released there.
+            if step is not IRLegalization or state.flags.nrt:
+                step().run_pass(state)
+        return True
 
 
-_PASSES = (
+_STEPS: tuple[type, ...] = (
     TranslateByteCode,
     FixupArgs,
     IRProcessing,
@@ -163,6 +170,16 @@ _PASSES = (
     _InnerLowering,
     NoPythonBackend,
 )
+
+
+class InnerCompiler(compiler.CompilerBase):
+    """numba's compiler, with the last step left to the callers."""
+
+    def define_pipelines(self) -> list:
+        pipeline = PassManager("inner")
+        pipeline.add_pass(_AllSteps, _AllSteps.__name__)
+        pipeline.finalize()
+        return [pipeline]
 
 
 class InnerDispatcher(CPUDispatcher):

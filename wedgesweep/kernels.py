@@ -74,20 +74,23 @@ def _usable(home: Path, digest: str) -> Path | None:
 
 
 def _digest() -> str:
-    digest = sha256(_package_digest() + bytes([PLAIN]))
+    digest = sha256(_PACKAGE_DIGEST + bytes([PLAIN]))
     for name, source in outside_sources():
         digest.update(name.encode() + b"\0" + source)
     return digest.hexdigest()[:16]
 
 
-@cache
-def _package_digest() -> bytes:
+def _digest_of_package() -> bytes:
     digest = sha256(str(PACKAGE).encode())  # numba's files are valid for sources in one place only
     for path in sorted(PACKAGE.rglob("*.py")):
         source = path.read_bytes()
         if COMPILES in source:
             digest.update(path.relative_to(PACKAGE).as_posix().encode() + b"\0" + source)
     return digest.digest()
+
+
+# Of the sources at import: what is edited while a process runs is not what it compiles.
+_PACKAGE_DIGEST = _digest_of_package()
 
 
 def outside_sources() -> list[tuple[str, bytes]]:
