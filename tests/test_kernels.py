@@ -42,13 +42,16 @@ import json, sys
 import numpy as np
 from wedgesweep import friction, kernels
 from wedgesweep.friction.curve import curve
-from wedgesweep.systems.suspension import parameters
+from wedgesweep.systems import compact
+from wedgesweep.systems.oscillator import parameters
 
+body = {"mass": 1.0, "spring": 1e3, "normal_force": 1.0}
 names = ["static-dynamic", *sys.argv[1:]]
 if sys.argv[1:]:
     import my_law
     friction.register("my-law", my_law)
-found = [curve(np.array([0.1]), 1, parameters.record(name, 1e-3, 100.0)[0])[0] for name in names]
+cases = [compact(parameters.record(name, 1e-3, 100.0, body)) for name in names]
+found = [curve(np.array([0.1]), 1, case[0])[0] for case in cases]
 print(json.dumps([kernels.folder().name, *found]))
 """
 # What a process has that is not this package's.

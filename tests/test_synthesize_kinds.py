@@ -122,7 +122,11 @@ amplitude_mm = 0.1
 @pytest.mark.parametrize(
     ("plan", "message"),
     [
-        (SWEEP.replace("4.0", "60.0"), "test[0] (transient): normal forces not unique at t = "),
+        pytest.param(
+            SWEEP.replace("4.0", "60.0"),
+            "test[0] (transient): normal forces not unique at t = ",
+            marks=pytest.mark.acceptance,
+        ),
         (LOOP.replace("10.0", "60.0"), "test[0] (loop): no force drives the mass in "),
     ],
 )

@@ -23,17 +23,34 @@ HIDDEN = "[effects.guide_friction]\nforce_N_m = 0.012\n"
 RELEASE = '[[test]]\nkind = "transient"\nrelease_deg = {}\nduration_s = 5.0\n'
 
 
-@pytest.fixture(scope="module")
-def files(tmp_path_factory: pytest.TempPathFactory) -> Path:
+MEASURED = """
+[measurement]
+model = "model.toml"
+[measurement.columns]
+time = { column = "t", unit = "s" }
+displacement = { column = "x", unit = "mm" }
+[[measurement.test]]
+file = "decay.csv"
+kind = "transient"
+"""
+
+
+@pytest.fixture
+def files(tmp_path: Path) -> Path:
     """A measurement of three releases, from large angles."""
-    folder = tmp_path_factory.mktemp("pendulum")
-    (folder / "truth.toml").write_text(PENDULUM + HIDDEN)
-    (folder / "tests.toml").write_text("".join(map(RELEASE.format, (70.0, -50.0, 40.0))))
+    (tmp_path / "truth.toml").write_text(PENDULUM + HIDDEN)
+    (tmp_path / "tests.toml").write_text("".join(map(RELEASE.format, (70.0, -50.0, 40.0))))
     made = ("--level", "0.001", "--sampling-hz", "100")
     invoke(
-        "synthesize", folder / "truth.toml", "--tests", folder / "tests.toml", "-o", folder / "made", *made
+        "synthesize",
+        tmp_path / "truth.toml",
+        "--tests",
+        tmp_path / "tests.toml",
+        "-o",
+        tmp_path / "made",
+        *made,
     )
-    return folder / "made"
+    return tmp_path / "made"
 
 
 @pytest.mark.acceptance
@@ -58,8 +75,9 @@ def test_friction_of_a_pendulum_is_found_in_its_units(files: Path) -> None:
     assert " mm" not in report
 
 
-def test_lengths_of_a_rotation_are_refused(files: Path) -> None:
-    wrong = (files / "measured.toml").read_text().replace('unit = "mrad"', 'unit = "mm"')
-    (files / "wrong.toml").write_text(wrong)
-    answer = invoke("check", files / "wrong.toml", code=2)
+def test_lengths_of_a_rotation_are_refused(tmp_path: Path) -> None:
+    (tmp_path / "model.toml").write_text(PENDULUM)
+    (tmp_path / "decay.csv").write_text("t,x\n" + "".join(f"{0.01 * i},{i % 7}\n" for i in range(300)))
+    (tmp_path / "wrong.toml").write_text(MEASURED)
+    answer = invoke("check", tmp_path / "wrong.toml", code=2)
     assert "mm is not a unit of an angle or a torque" in answer

@@ -329,23 +329,23 @@ def test_a_hangup_that_is_ignored_stays_ignored():
         signal.signal(signal.SIGHUP, before)
 
 
-def test_killed_workers_and_all_it_goes_on_and_ends_with_the_same_bits(tmp_path):
+def test_killed_workers_and_all_it_goes_on_and_ends_with_the_same_bits(finished, tmp_path):
     """The campaign of scripts/kill_campaign.py does so 200 times, at random moments."""
-    (tmp_path / "c.toml").write_text(small_sweep.CONFIG)
-    sweep = small_sweep.sweep(tmp_path)
+    (tmp_path / "c.toml").write_text(CONFIG)
+    sweep = small_sweep.sweep(tmp_path, CONFIG)
     process = small_sweep.start("run", "c.toml", "-o", "small.nc", "--n-jobs", 2, directory=tmp_path)
-    wait_for(process, sweep.journal_path, 3 * (sweep.dtype.itemsize + 4))
+    wait_for(process, sweep.journal_path, 2 * (sweep.dtype.itemsize + 4))
     os.killpg(process.pid, signal.SIGKILL)
     process.communicate()
     assert process.returncode == -signal.SIGKILL
     records = journal.read(sweep.journal_path, sweep.dtype)
     kept = dict(zip(records["index"].tolist(), records["wall_time"].tolist(), strict=True))
-    assert 0 < len(kept) < small_sweep.CASES
+    assert 0 < len(kept) < CASES
     told = []
     ds = sweep.run(n_jobs=1, progress=lambda records, total: told.append((len(records), total)))
-    assert told[0] == (len(kept), small_sweep.CASES)
-    assert sum(count for count, _ in told) == small_sweep.CASES
+    assert told[0] == (len(kept), CASES)
+    assert sum(count for count, _ in told) == CASES
     # Not computed again: even the wall times are those of the first time.
     assert [ds["wall_time"].values.ravel()[index] for index in kept] == list(kept.values())
-    assert_same_numbers(xr.load_dataset(sweep.out), sweep.run_here())
+    assert_same_numbers(xr.load_dataset(sweep.out), finished[1])
     assert {path.name for path in tmp_path.iterdir()} <= {"c.toml", "small.nc"}
