@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from wedgesweep.measured.cycles import estimate_noise
+from wedgesweep.measured.cycles import cut, estimate_noise
 from wedgesweep.measured.declarations import LOOP, STEADY, TRANSIENT
 from wedgesweep.measured.frequency import FEWEST_CYCLES, estimate_frequency
 from wedgesweep.measured.stationarity import MOST_LEVEL_RATIO, MOST_MOVED, stationarity
@@ -18,6 +18,9 @@ PAUSE, FEWEST, SHARE = 20.0, 200, 0.1
 # Part of a free motion in which it must be at its largest, and share of the largest swing above which the
 # swing before that counts as a push.
 BEGINNING, PUSH, TAIL = 0.5, 0.9, 0.1
+# Distance of a period from the mean of the second half of a record, over the largest one of a period of that
+# half, from which it belongs to the run-up: noise alone hardly doubles it.
+RUN_UP = 2.0
 
 
 @dataclass(frozen=True)
@@ -94,3 +97,16 @@ def from_release(signal: np.ndarray, time: np.ndarray) -> Part:
     largest = int(swing.argmax())
     pushed = largest > 2 and swing[0] < PUSH * swing[largest] and largest < BEGINNING * signal.size
     return Part(start=float(f"{time[largest]:.6g}")) if pushed else WHOLE
+
+
+def from_steady(signal: np.ndarray, time: np.ndarray) -> Part:
+    """The part of a driven motion (n,) after the run-up, whose periods differ from those of the second half."""
+    cycles = cut(time, signal, estimate_frequency(time, signal))
+    half = cycles.times.size // 2
+    away = np.linalg.norm(cycles.harmonics - cycles.harmonics[half:].mean(axis=0), axis=1)
+    run_up = np.flatnonzero(away[:half] > RUN_UP * away[half:].max())
+    if not run_up.size or cycles.times.size - run_up[-1] - 1 < FEWEST_CYCLES:
+        return WHOLE
+    period = cycles.times[1] - cycles.times[0]
+    start = cycles.middle + cycles.times[run_up[-1]] + 0.5 * period
+    return Part(start=_down(float(start), float(time[1] - time[0])))

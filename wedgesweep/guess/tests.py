@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from wedgesweep.guess.columns import FORCE, HUGE, INPUT, MOTIONS, Chosen, Run, choose, runs_of, with_units
-from wedgesweep.guess.kind import WHOLE, Part, from_release, kind_of, parts_of
+from wedgesweep.guess.kind import WHOLE, Part, from_release, from_steady, kind_of, parts_of
 from wedgesweep.measured.declarations import LOOP, STEADY, TRANSIENT
 from wedgesweep.readers.survey import Survey
 from wedgesweep.units import UNITS
@@ -99,6 +99,8 @@ def _with_kind(test: Guessed) -> list[Guessed]:
     parts = parts_of(_stamps(test))
     if kind == TRANSIENT and INPUT not in channels and parts == [WHOLE]:
         parts = [from_release(next(iter(signals.values())), time)]
+    elif kind == STEADY and parts == [WHOLE]:
+        parts = [from_steady(next(each for name, each in signals.items() if name != INPUT), time)]
     return [replace(test, part=part) for part in parts]
 
 
