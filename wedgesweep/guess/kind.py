@@ -100,7 +100,7 @@ def from_release(signal: np.ndarray, time: np.ndarray) -> Part:
 
 
 def from_steady(signal: np.ndarray, time: np.ndarray) -> Part:
-    """The part of a driven motion (n,) after its run-up, whose periods are unlike those of the second half."""
+    """The part of a driven motion (n,) after its run-up, which is unlike the second half of the record."""
     cycles = cut(time, signal, estimate_frequency(time, signal))
     half = cycles.times.size // 2
     away = np.linalg.norm(cycles.harmonics - cycles.harmonics[half:].mean(axis=0), axis=1)
