@@ -31,7 +31,7 @@ def record(rng, frequency, periods=8.4, correlation=0.0, level=0.04, slope=0.0):
     return time, (truth @ turns).real + noise + 3.0 + slope * time, truth
 
 
-@pytest.mark.few(2)
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     ("frequency", "periods", "correlation"),
     [(5.0, 8.4, 0.9), (32.0, 8.4, 0.0), (11.0, 8.4, 0.9), (11.0, 4.0, 0.9), (11.0, 4.5, 0.0)],
