@@ -18,7 +18,7 @@ SAMPLES_PER_PERIOD = 64
 ALL, FEW = slice(None), slice(1, None, 7)  # few of the cases for what takes a second a case
 FEWEST = slice(1, None, 14)
 COPIES = 10  # of the cases in a batch: it is then as large as those of a sweep
-WITH_ALL = ("coulomb", "static-dynamic")  # with all in the third law too it would take as long again
+WITH_RADAU = ("coulomb", "static-dynamic")  # in the third law too it would take as long again
 PLAIN, BATCH, LOOP = "plain Radau", "event-driven, to records", "event-driven, loop alone"
 
 
@@ -80,13 +80,11 @@ our_radau = one_by_one(_our_radau)
 def contenders(law):
     """All that take part in a law, by name."""
     smoothed, found = law == "coulomb", {}
-    if law in WITH_ALL:
+    if law in WITH_RADAU:
         found[PLAIN] = Contender(one_by_one(plain.ratio, law), FEW, DECADES, smoothed)
         found["this project's Radau"] = Contender(our_radau, FEW, DECADES, False)
     for name, solve in libraries.installed()[0].items():
-        if law in WITH_ALL or name in libraries.FASTEST:
-            ladder = LADDER if name in libraries.FASTEST else DECADES
-            found[name] = Contender(one_by_one(solve), ALL, ladder, smoothed)
+        found[name] = Contender(one_by_one(solve), ALL, LADDER, smoothed)
     found[BATCH] = Contender(to_records, ALL, LADDER, False, COPIES)
     found[LOOP] = Contender(loop_alone, ALL, LADDER, False, COPIES)
     return found

@@ -4,13 +4,12 @@ All integrate smooth.py's right-hand side from rest to the end of the window in 
 samples of its kept part. An optional library that is not installed is named as absent.
 """
 
-from functools import cache
 from importlib.util import find_spec
 
 import numpy as np
 import smooth
 from scipy.integrate import odeint
-from workload import numbers, sample_times, turning_point_ratio
+from workload import sample_times, turning_point_ratio
 
 from wedgesweep.systems import compact
 
@@ -48,65 +47,11 @@ def numbalsoda(record, rtol):
     return _ratio(times, states, record) if success else np.nan
 
 
-def cvode(record, rtol):
-    from sksundae.cvode import CVODE
-
-    times = _times(record)
-    run = CVODE(
-        smooth.rate_into,
-        rtol=rtol,
-        atol=ABSOLUTE * rtol,
-        max_num_steps=MOST_STEPS,
-        userdata=compact(record),
-    ).solve(times, np.zeros(2))
-    return _ratio(times, run.y, record) if run.success else np.nan
-
-
-def diffrax(record, rtol):
-    times = _times(record)
-    states = _diffrax_solve()(times, numbers(record), rtol)
-    return _ratio(times, np.asarray(states), record)
-
-
-@cache
-def _diffrax_solve():
-    """Compiled solve of one case; explicit: here Kvaerno's implicit methods are slower, coulomb included."""
-    import diffrax
-    import jax
-    from jax import numpy as jnp
-
-    jax.config.update("jax_enable_x64", True)
-    term = diffrax.ODETerm(smooth.jax_rate)
-
-    @jax.jit
-    def solve(times, p, rtol):
-        steps = diffrax.PIDController(rtol=rtol, atol=ABSOLUTE * rtol)
-        return diffrax.diffeqsolve(
-            term,
-            diffrax.Tsit5(),
-            times[0],
-            times[-1],
-            None,
-            jnp.zeros(2),
-            p,
-            saveat=diffrax.SaveAt(ts=times),
-            stepsize_controller=steps,
-            max_steps=MOST_STEPS,
-            throw=False,
-        ).ys
-
-    return solve
-
-
 # Name, module that it needs, function.
 LIBRARIES = (
     ("LSODA (scipy odeint)", "scipy", scipy_lsoda),
     ("numbalsoda", "numbalsoda", numbalsoda),
-    ("CVODE (scikit-sundae)", "sksundae", cvode),
-    ("diffrax (Tsit5)", "diffrax", diffrax),
 )
-# Take part in every law, with a finer ladder.
-FASTEST = ("LSODA (scipy odeint)", "numbalsoda")
 
 
 def installed():

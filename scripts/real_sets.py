@@ -1,7 +1,9 @@
 """Recordings as their owners published them: from `init` to the answer, with the lines that were edited.
 
 DIR holds the sets, which are no part of wedgesweep. Each set is begun in OUT/NAME, its lines are edited, it
-is checked and diagnosed within a time limit, one after the other. Prints a table in Markdown.
+is checked and diagnosed within a time limit, one after the other; those that are not in DIR are left out.
+Prints a table in Markdown: the answers, or with ``--forces`` the force that no name explains, its gain on
+blocks left out, and its likeness.
 """
 
 import argparse
@@ -35,6 +37,14 @@ EDITS = {
         ("measured.toml", r"scale = 1.0", "scale = 200.0"),
     ],
 }
+# Tried where the force is asked for, and how many of its nearest names are shown.
+CANDIDATES = (
+    *("viscous_damping", "directional_damping", "quadratic_drag", "cubic_stiffness", "guide_friction"),
+    *("friction_level", "stribeck", "presliding", "directional_friction", "empirical_force"),
+)
+SHOWN = 3
+ANSWERS = ("set", "lines edited", "verdict", "best of each size: accuracy (held out)", "answer")
+FORCES = ("recording", "verdict", "model on trial", "best named", "table", "freedom", "looks like")
 
 
 def main() -> None:
@@ -43,28 +53,49 @@ def main() -> None:
     parser.add_argument("out", type=Path)
     parser.add_argument("--only", choices=FILES, nargs="*", default=list(FILES))
     parser.add_argument("--time-limit", default="120s")
+    parser.add_argument("--forces", action="store_true", help="tell the force that no name explains")
     options = parser.parse_args()
-    print(
-        "| set | lines edited | verdict | best of each size: accuracy (held out) | answer |",
-        "|---|---|---|---|---|",
-        sep="\n",
-    )
+    head = FORCES if options.forces else ANSWERS
+    print(f"| {' | '.join(head)} |\n{'|---' * len(head)}|")
     for name in options.only:
-        print(row(name, options.directory.absolute(), options.out / name, options.time_limit), flush=True)
+        if all((options.directory / file).exists() for file in FILES[name]):
+            print(f"| {' | '.join(row(name, options))} |", flush=True)
 
 
-def row(name: str, source: Path, place: Path, limit: str) -> str:
-    begin(name, source, place)
+def row(name: str, options: argparse.Namespace) -> list[str]:
+    """Cells of a set, which is begun, checked and diagnosed."""
+    place = options.out / name
+    begin(name, options.directory.absolute(), place)
     command("check", "measured.toml", place=place)
-    told = command(
-        "diagnose", "measured.toml", "-o", "found", "--no-report", "--time-limit", limit, place=place
-    )
+    more = ("--effects", ",".join(CANDIDATES)) if options.forces else ()
+    limit = ("--time-limit", options.time_limit)
+    told = command("diagnose", "measured.toml", "-o", "found", "--no-report", *limit, *more, place=place)
     found = json.loads((place / "found" / "diagnosis.json").read_text())
+    return [name, *(force(found) if options.forces else answer(name, found, told))]
+
+
+def answer(name: str, found: dict, told: str) -> list[str]:
     best = "; ".join(rung(each) for each in found["ladder"])
-    sentence = next(
-        (line for line in told.splitlines() if found["verdict"] in line or line.endswith(".")), ""
-    )
-    return f"| {name} | {len(EDITS.get(name, ()))} | `{found['verdict']}` | {best} | {sentence} |"
+    lines = (line for line in told.splitlines() if found["verdict"] in line or line.endswith("."))
+    return [str(len(EDITS.get(name, ()))), f"`{found['verdict']}`", best, next(lines, "")]
+
+
+def force(found: dict) -> list[str]:
+    base, table = share(found["ladder"][0]["accuracy_held_out"]), found["empirical_force"]
+    if table is None:
+        return [found["verdict"], base, "not reached", "", "", ""]
+    named = table["named"]
+    likely = ", ".join(f"{each['form']} {share(each['share'])}" for each in table.get("nearest", [])[:SHOWN])
+    return [
+        *(found["verdict"], base),
+        f"{share(named['accuracy_held_out'])} ({' + '.join(named['effects']) or 'base model'})",
+        *(share(table["accuracy_held_out"]), f"{table['degrees_of_freedom']:.0f}"),
+        likely or "not shown: no better than what has a name",
+    ]
+
+
+def share(value: float | None) -> str:
+    return "none" if value is None else f"{100.0 * value:.2g} %"
 
 
 def begin(name: str, source: Path, place: Path) -> None:
