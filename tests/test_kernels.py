@@ -150,6 +150,13 @@ def test_code_is_loaded_by_the_next_process(tmp_path, place):
     assert {path: path.stat().st_mtime_ns for path in place.rglob("*.nbc")} == kept
 
 
+def test_the_key_is_of_the_sources_at_import(monkeypatch):
+    """Code of a process would otherwise be kept under sources that were edited while it ran."""
+    key = kernels.folder().name
+    monkeypatch.setattr(Path, "read_bytes", lambda path: b"from wedgesweep.compiled import edited")
+    assert kernels.folder().name == key
+
+
 def test_an_unknown_law_is_an_error_and_so_is_one_that_comes_too_late(monkeypatch):
     case = parameters.record("coulomb", 1e-3, 100.0)
     systems.compact(case)
