@@ -7,10 +7,12 @@ import sys
 from pathlib import Path
 
 import numpy as np
+import pytest
 import xarray as xr
 
 from wedgesweep import config
 from wedgesweep.config.physics import BREAKAWAY
+from wedgesweep.errors import ConfigError
 from wedgesweep.sweep.run import Sweep
 
 ROOT = Path(__file__).parent.parent
@@ -50,6 +52,14 @@ samples_per_period = 32
 
 def sweep(directory: Path, text: str = CONFIG) -> Sweep:
     return Sweep(config.parse(text), directory / "small.nc")
+
+
+def faults(text: str, source: str = "study.toml") -> list[str]:
+    """Everything that is wrong with a config, a line each."""
+    with pytest.raises(ConfigError) as caught:
+        config.parse(text, source)
+    assert str(caught.value).splitlines() == caught.value.problems
+    return caught.value.problems
 
 
 def command(*arguments: object) -> list[str]:

@@ -5,6 +5,7 @@ from math import inf, nan
 import numpy as np
 import pytest
 
+from tests.small_sweep import faults
 from wedgesweep import config
 from wedgesweep.config import ConfigError
 from wedgesweep.config.keys import Number
@@ -19,20 +20,13 @@ UNILATERAL = '[suspension]\njoints = "unilateral"\n'
 CASE = '[[sweep.case]]\nfriction_law = "coulomb"\nbeta = 0.4\namplitude_mm = 0.3\n'
 
 
-def problems(text: str) -> list[str]:
-    with pytest.raises(ConfigError) as caught:
-        config.parse(text, "study.toml")
-    assert str(caught.value).splitlines() == caught.value.problems
-    return caught.value.problems
-
-
 def problem(text: str) -> str:
-    (only,) = problems(text)
+    (only,) = faults(text)
     return only
 
 
 def test_all_faults_are_reported_at_once_with_their_paths():
-    found = problems("""
+    found = faults("""
         titel = "x"
         [suspension]
         bolster_mas_kg = 1.0
@@ -139,7 +133,7 @@ def test_a_sweep_that_cannot_be_right(key, value, hint):
 )
 def test_settings_that_exclude_each_other(text, path):
     assert any(
-        each.startswith(f"study.toml: {path}: ") and "exclude each other" in each for each in problems(text)
+        each.startswith(f"study.toml: {path}: ") and "exclude each other" in each for each in faults(text)
     )
 
 
@@ -236,7 +230,7 @@ def test_constant_damping_needs_the_force_of_its_springs():
 def test_unilateral_joints_need_an_angle_and_friction_that_does_not_grow():
     law = SWEEP.replace("coulomb", "exponential")
     joints = '[suspension]\njoints = "unilateral"\ncolumn_angle_deg = 0.0\n[friction]\nstatic = 0.2\n'
-    angle, static = problems(law + joints)
+    angle, static = faults(law + joints)
     assert "suspension.column_angle_deg" in angle
     assert "friction.static" in static
 
@@ -249,7 +243,7 @@ def test_an_effect_that_a_law_has_no_place_for(law, effect):
     model = OSCILLATOR + more + SWEEP.replace("coulomb", law)
     assert effect not in config.parse(model).possible_effects
     numbers = {"stribeck": "peak = 0.1\nvelocity_mm_per_s = 10.0\n", "ageing": "rate = 0.1\ntime_s = 0.1\n"}
-    (problem,) = problems(model + f"[effects.{effect}]\n{numbers[effect]}")
+    (problem,) = faults(model + f"[effects.{effect}]\n{numbers[effect]}")
     assert f"effects.{effect}: {law}" in problem
 
 
@@ -275,7 +269,7 @@ def test_locked_in_forces_need_set_valued_friction_and_nothing_that_yields():
     assert not may_jam(UNILATERAL + SWEEP)
     column = "[effects.column_compliance]\nstiffness_N_per_mm = 100.0\n"
     assert not may_jam(SWEEP + column)
-    (problem,) = problems("[suspension]\nlocked_in = 0.5\n" + SWEEP + column)
+    (problem,) = faults("[suspension]\nlocked_in = 0.5\n" + SWEEP + column)
     assert "suspension.locked_in" in problem
     assert "effects.column_compliance" in problem
     (record,) = config.parse("[suspension]\nlocked_in = 0.5\n" + SWEEP).records()
@@ -285,7 +279,7 @@ def test_locked_in_forces_need_set_valued_friction_and_nothing_that_yields():
 def test_a_damper_behind_a_spring_needs_friction_and_damping_that_follow_the_same_body():
     own = OSCILLATOR + 'contact = "ground"\n'
     effect = "[effects.series_compliance]\nstiffness_N_per_mm = 10.0\n"
-    (problem,) = problems(own + effect + SWEEP)
+    (problem,) = faults(own + effect + SWEEP)
     assert "effects.series_compliance: damping follows the base" in problem
     assert "series_compliance" not in config.parse(own + SWEEP).possible_effects
     forced = SWEEP.replace("amplitude_mm", "amplitude_N") + 'excitation = "force"\n'

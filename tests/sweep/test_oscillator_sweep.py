@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from reproduce import published
 
+from tests.small_sweep import faults
 from wedgesweep import config, figures
 from wedgesweep.config import ConfigError
 from wedgesweep.sweep.run import Sweep
@@ -124,7 +125,6 @@ def test_contradictions_are_told(old, new, problem):
 
 def test_a_suspension_has_no_force_and_no_hyperbolic_law():
     text = '[sweep]\nfriction_law = "hyperbolic"\nbeta = 1.0\nexcitation = "force"\namplitude_N = 1.0\n'
-    with pytest.raises(ConfigError) as caught:
-        config.parse(text)
-    assert "a law of [oscillator]" in str(caught.value)
-    assert "driven by its side frame" in str(caught.value)
+    law, force = faults(text)
+    assert "a law of [oscillator]" in law
+    assert "driven by its side frame" in force

@@ -1,10 +1,13 @@
 """Sweeps whose input does not repeat: config, dataset, resuming, figures."""
 
+import re
+
 import numpy as np
 import pytest
 import xarray as xr
 
 from tests.command import invoke
+from tests.small_sweep import faults
 from wedgesweep import config, figures
 from wedgesweep.config.physics import physics
 from wedgesweep.figures.transient import loop, ring_down
@@ -225,9 +228,7 @@ def test_faults_of_a_swept_sine_are_told(old, new, told):
     if told is None:
         assert config.parse(text).transient
         return
-    with pytest.raises(config.ConfigError) as caught:
-        config.parse(text)
-    assert told in str(caught.value)
+    assert told in "\n".join(faults(text))
 
 
 @pytest.mark.parametrize(
@@ -255,10 +256,8 @@ def test_faults_of_a_swept_sine_are_told(old, new, told):
     ],
 )
 def test_faults_of_other_kinds_are_told(given, told):
-    with pytest.raises(config.ConfigError) as caught:
-        config.parse(HEAD + given + TAIL)
-    (problem,) = caught.value.problems
-    assert told in problem
+    (fault,) = faults(HEAD + given + TAIL)
+    assert told in fault
 
 
 @pytest.mark.parametrize("unit", ["m/s^2", "m/s2", "m/s²"])
@@ -284,9 +283,8 @@ def test_faults_of_a_recorded_input_are_told(tmp_path, name, text, told):
     if text is not None:
         (tmp_path / name).write_text(text)
     (tmp_path / "a.toml").write_text(HEAD + RECORD.replace("bump.csv", name) + TAIL)
-    with pytest.raises(config.ConfigError) as caught:
+    with pytest.raises(config.ConfigError, match=re.escape(told)):
         config.load(tmp_path / "a.toml")
-    assert told in str(caught.value)
 
 
 def test_a_case_of_a_sine_and_a_check_by_radau_are_refused(folder):

@@ -20,11 +20,8 @@ from wedgesweep.kinds import MEASURED
 if TYPE_CHECKING:
     from wedgesweep.diagnosis_result import DiagnosisResult
 
-# Figures that are written, with the kind of test that some of them are of.
-FIGURES = {
-    **{"misfit": "steady", "loops": "loop", "decays": "transient", "spectrogram": "transient"},
-    **dict.fromkeys(("candidates", "ladder", "gain", "missing-force"), ""),
-}
+# Figures that are written, as far as the tests are of their kind.
+FIGURES = ("misfit", "loops", "decays", "spectrogram", "candidates", "ladder", "gain", "missing-force")
 # Marks a directory in which an earlier result is being replaced.
 REPLACING = ".unfinished-diagnosis"
 
@@ -227,10 +224,10 @@ def _move(made: Path, directory: Path, renews: bool = False) -> None:
 
 def _draw(found: "DiagnosisResult", directory: Path, n_jobs: int) -> None:
     """Write the figures; skip those that need more than these tests give."""
-    from wedgesweep.figures import parallel
+    from wedgesweep.figures import diagnosis, parallel
 
     kinds = ("", found.document["kind"], *found.parts)
-    wanted = [name for name, kind in FIGURES.items() if kind in kinds]
+    wanted = [name for name in FIGURES if diagnosis.FIGURES[name].tests in kinds]
     save = partial(_save, found, directory)
     for problem in filter(None, parallel.map_forked(save, wanted, n_jobs)):
         log.info(f"skipped {problem}")
@@ -241,7 +238,7 @@ def _save(found: "DiagnosisResult", directory: Path, name: str) -> str | None:
     from wedgesweep import figures
 
     try:
-        figures.save(figures.draw(found.of_kind(FIGURES[name]), name), directory / _file_of(name))
+        figures.save(figures.draw(found, name), directory / _file_of(name))
     except ValueError as error:
         return str(error)
     return None

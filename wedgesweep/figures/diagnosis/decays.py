@@ -90,7 +90,7 @@ def draw(target: Target, result: DiagnosisResult, tests: Sequence[int] | None = 
     share each time. Below, what the models leave, over the grey band of the noise: a difference that
     grows and turns over is a frequency that is off.
     """
-    made = multiples(target, result, selection.choose(result, tests), (2.9, 1.15), 3, between=0.42)
+    made = multiples(target, result, tests, (2.9, 1.15), 3, between=0.42)
     cut = False
     for test, (motion, sizes, left) in made:
         signals = _signals(result, test)

@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 
 from wedgesweep.diagnosis_result import DiagnosisResult
 from wedgesweep.figures import labels, style
-from wedgesweep.figures.diagnosis import marks, selection
+from wedgesweep.figures.diagnosis import marks
 from wedgesweep.figures.diagnosis.multiples import multiples
 from wedgesweep.figures.panels import Panels, Target
 
@@ -50,15 +50,8 @@ def draw(target: Target, result: DiagnosisResult, tests: Sequence[int] | None = 
     that acts alike in both directions (friction), even ones from physics that does not (the column angle,
     stops, directional friction). A harmonic in the grey area cannot be distinguished from noise.
     """
-    made = multiples(
-        target,
-        result,
-        selection.choose(result, tests),
-        (2.5, 1.15),
-        result.data.sizes["channel"],
-        between=0.3,
-    )
     channels = result.data["channel"].values
+    made = multiples(target, result, tests, (2.5, 1.15), len(channels), between=0.3)
     for test, axes in made:
         for ax, channel in zip(axes, channels, strict=True):
             _draw(ax, result, test, channel)

@@ -41,7 +41,7 @@ def draw(target: Target, result: DiagnosisResult, tests: Sequence[int] | None = 
     models leave: a step at zero velocity is dry friction, a slope over velocity a damper, a slope or
     curve over displacement a spring, a slope on one side only a damper that depends on the direction.
     """
-    made = multiples(target, result, selection.choose(result, tests), (2.5, 1.5), 2, between=0.46)
+    made = multiples(target, result, tests, (2.5, 1.5), 2, between=0.46)
     for test, (loop, left) in made:
         _draw_loop(loop, result, test)
         _draw_left(left, result, test)

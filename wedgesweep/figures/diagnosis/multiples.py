@@ -38,12 +38,16 @@ class Multiples(Panels):
 def multiples(
     target: Target,
     result: DiagnosisResult,
-    tests: Sequence[int],
+    tests: Sequence[int] | None,
     size: Size,
     parts: int = 1,
     between: float = 0.0,
 ) -> Multiples:
-    """Make ``parts`` panels per test; a new figure gives them a size and a gap in inches."""
+    """Make ``parts`` panels per test; a new figure gives them a size and a gap in inches.
+
+    The tests are by default those with the largest misfit.
+    """
+    tests = selection.choose(result, tests)
     if isinstance(target, Axes):
         grid = panels(target, parts * len(tests))
     else:

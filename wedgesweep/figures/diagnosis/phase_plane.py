@@ -6,7 +6,7 @@ from matplotlib.axes import Axes
 
 from wedgesweep.diagnosis_result import DiagnosisResult
 from wedgesweep.figures import labels, style
-from wedgesweep.figures.diagnosis import marks, selection
+from wedgesweep.figures.diagnosis import marks
 from wedgesweep.figures.diagnosis.multiples import multiples
 from wedgesweep.figures.diagnosis.selection import closed, motion
 from wedgesweep.figures.panels import Panels, Target
@@ -33,7 +33,7 @@ def draw(target: Target, result: DiagnosisResult, tests: Sequence[int] | None = 
     To see: a loop that is flat along zero velocity sticks there; a jump of velocity at one displacement
     is a stop or a breakaway; a tilted or wider loop has another stiffness or dissipation.
     """
-    made = multiples(target, result, selection.choose(result, tests), (2.5, 1.9))
+    made = multiples(target, result, tests, (2.5, 1.9))
     for test, (ax,) in made:
         _draw(ax, result, test)
     words = labels.of(result.data)

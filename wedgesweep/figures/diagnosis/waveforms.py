@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 
 from wedgesweep.diagnosis_result import DiagnosisResult
 from wedgesweep.figures import labels, style
-from wedgesweep.figures.diagnosis import marks, selection
+from wedgesweep.figures.diagnosis import marks
 from wedgesweep.figures.diagnosis.multiples import multiples
 from wedgesweep.figures.diagnosis.selection import closed, motion
 from wedgesweep.figures.panels import Panels, Target
@@ -51,7 +51,7 @@ def draw(target: Target, result: DiagnosisResult, tests: Sequence[int] | None = 
     that is flat in one and round in the other means sticking, a shift in time a delay or another mass.
     The lowest panels show the difference; within the grey band (95 %) it is noise.
     """
-    made = multiples(target, result, selection.choose(result, tests), (2.5, 1.05), 3, between=0.16)
+    made = multiples(target, result, tests, (2.5, 1.05), 3, between=0.16)
     for test, (upper, middle, lower) in made:
         _draw(upper, result, test, 0)
         _draw(middle, result, test, 1)
