@@ -182,6 +182,7 @@ def test_fail_fast_keeps_what_is_finished(here):
     told = invoke("status", "locked.nc", code=1)
     assert "locked.nc.partial: unfinished\ntitle: small" in told
     assert "2 cases: 1 locked, 1 remaining" in told
+    assert "not_run" not in told
     told = run("locked.toml", "--keep-going", code=1)
     assert "2 cases, 1 of them from an earlier run" in told
     assert (here / "locked.nc").exists()

@@ -199,6 +199,12 @@ def test_transients(kind):
         draw(kind, build())
 
 
+@pytest.mark.parametrize("kind", [name for name, each in diagnosis.FIGURES.items() if each.tests == "steady"])
+def test_figures_of_steady_tests_say_that_there_are_none(kind):
+    with pytest.raises(ValueError, match=f"^{kind}: no test is of steady vibration"):
+        figures.draw(fixture_transient.build(), kind)
+
+
 def test_swings_reach_from_one_turning_point_to_the_next():
     time = np.linspace(0.0, 10.0, 100_001)
     noise = 1e-3 * np.random.default_rng(0).standard_normal(time.size)
