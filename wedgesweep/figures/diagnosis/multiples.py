@@ -47,12 +47,12 @@ def multiples(
 
     The tests are by default those with the largest misfit.
     """
-    tests = selection.choose(result, tests)
+    chosen = selection.choose(result, tests)
     if isinstance(target, Axes):
-        grid = panels(target, parts * len(tests))
+        grid = panels(target, parts * len(chosen))
     else:
-        grid = _grid(len(tests), size, parts, between)
-    made = Multiples(grid.figure, grid.axes, grid.embedded, tests, parts)
+        grid = _grid(len(chosen), size, parts, between)
+    made = Multiples(grid.figure, grid.axes, grid.embedded, chosen.tolist(), parts)
     for test, (first, *_) in made:
         first.set_title(
             f"{selection.label(result.data, test)}\n{selection.misfit_label(result, test)}", fontsize=8.5
