@@ -130,10 +130,6 @@ class Concatenation(FitData):
         same = all(one is other for one, other in zip(parts, self.parts, strict=True))
         return self if same else type(self)(parts, self.layout)
 
-    @property
-    def tests(self) -> int:
-        return sum(self.layout.tests)
-
     def power_of(self, response: Responses) -> np.ndarray:
         return np.concatenate(self._each("power_of", each=response.parts))
 

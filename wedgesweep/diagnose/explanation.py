@@ -17,8 +17,9 @@ PENALTY = 6.0
 # A model explains notably more than another if it leaves less than this share of the other's chi-squared, or
 # of its error on tests left out: a smaller gain is no reason to prefer one with more numbers.
 NOTABLE = 0.9
-# Least p-value of an adequate model, and of one that is possible at all.
-ADEQUATE, POSSIBLE = 0.01, 1e-3
+# Least p-values: of an adequate model, of one that is possible at all, and of a base model from which nothing
+# need be missing. One clean set in ten thousand is below the last.
+ADEQUATE, POSSIBLE, TOLERABLE = 0.01, 1e-3, 1e-4
 
 
 def parameter_penalty(data: FitData) -> float:

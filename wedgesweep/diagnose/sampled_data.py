@@ -94,10 +94,6 @@ class SampledData(FitData):
         """Standard deviation of noise and allowed model error together, (T, m); 1 elsewhere."""
         return np.where(self.weight > 0.0, np.hypot(self.noise, self.model_error * self.size), 1.0)
 
-    @property
-    def tests(self) -> int:
-        return len(self.names)
-
     def subset(self, rows: np.ndarray) -> Self:
         part = self.chosen_tests(np.arange(self.tests)[rows])
         if self.resampled is None:

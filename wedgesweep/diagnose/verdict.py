@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy.special import chdtrc
 
-from wedgesweep.diagnose.explanation import ADEQUATE, POSSIBLE, Explanation, penalised
+from wedgesweep.diagnose.explanation import ADEQUATE, POSSIBLE, TOLERABLE, Explanation, penalised
 from wedgesweep.diagnose.fit_data import FitData
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnosis_result import VERDICTS, Reason
@@ -22,8 +22,6 @@ if TYPE_CHECKING:
 NOTHING, NAMED, CONSISTENT, TIED, INSUFFICIENT, NONE = VERDICTS
 # Explanations whose penalised misfits differ by less than this cannot be distinguished.
 GAP = 10.0
-# Least p-value of a base model from which nothing need be missing.
-TOLERABLE = 1e-4
 # The tests that hold this share of the base model's excess must be explained by themselves.
 EXCESS_SHARE = 0.9
 # Excess chi-squared of the base model that is needed to name a cause.
