@@ -120,15 +120,18 @@ def test_a_damper_does_not_stand_for_the_friction_of_a_shaken_mass(tmp_path):
 
         x, v = solve_ivp(rate, (0.0, t[-1]), [0.0, 0.0], t_eval=t, method="LSODA", rtol=1e-6).y
         mass = -spring * x - damping * v - friction * np.tanh(v / 1e-3)
-        name = tmp_path / f"{frequency:g}.csv"
-        files.append(text(name, t, 3.0 * np.sin(omega * t), mass, header="t,table m/s^2,mass m/s^2"))
+        name, header = tmp_path / f"{frequency:g}.csv", "t,table m/s^2,mass m/s^2,x mm"
+        files.append(text(name, t, 3.0 * np.sin(omega * t), mass, 1e3 * x, header=header))
     # The run-up from rest is cut off: free vibration dies away with damping / 2 = 1.15 /s and by friction.
-    assert all(8.0 < each.duration < 15.9 for each in begun(tmp_path, *files).tests)
+    measurement = begun(tmp_path, *files)
+    assert all(8.0 < each.duration < 15.9 for each in measurement.tests)
+    assert measurement.columns["acceleration"]["of"] == "absolute"
+    assert measurement.columns["displacement"]["of"] == "relative"
     first = (tmp_path / "model.toml").read_text()
     found = {
         key: float(re.search(rf"{key} = (\S+)", first)[1]) for key in ("spring_N_per_mm", "damping_N_s_per_m")
     }
-    assert found["spring_N_per_mm"] == pytest.approx(1e-3 * spring, rel=0.03)
+    assert found["spring_N_per_mm"] == pytest.approx(1e-3 * spring, rel=0.05)  # written as uncertain by 10 %
     assert found["damping_N_s_per_m"] < 2.0 * damping
     assert float(re.search(r"shows about (\S+) N", first)[1]) == pytest.approx(friction, rel=0.05)
 

@@ -1,7 +1,7 @@
 """Text of a first measured.toml and of its model: what was guessed, and questions as comments."""
 
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -9,7 +9,7 @@ from wedgesweep import rotation, toml
 from wedgesweep.guess.columns import INPUT, Chosen
 from wedgesweep.guess.model import NORMAL_FORCE, Numbers
 from wedgesweep.guess.tests import UNKNOWN_RATE, Guessed
-from wedgesweep.measured.declarations import ABSOLUTE, LOOP, STEADY
+from wedgesweep.measured.declarations import ABSOLUTE, LOOP, RELATIVE, STEADY
 from wedgesweep.readers.survey import Survey
 
 # Marks a line that asks.
@@ -20,9 +20,14 @@ ORDER = ("displacement", "velocity", "acceleration", "force", INPUT)
 
 
 def measured(
-    path: Path, model: Path, tests: Sequence[Guessed], surveys: Sequence[Survey], found: Numbers
+    path: Path,
+    model: Path,
+    tests: Sequence[Guessed],
+    surveys: Sequence[Survey],
+    found: Numbers,
+    relative: Collection[str],
 ) -> str:
-    """Text of a measured.toml at a path."""
+    """Text of a measured.toml at a path; ``relative``: channels of motion against the input."""
     first = tests[0]
     lines = [
         "# Written by wedgesweep init after a look at the data. Lines with '# ?' ask what it could not know.",
@@ -33,7 +38,7 @@ def measured(
         *_rate(first),
         "",
         "[measurement.columns]",
-        *_columns(first, path),
+        *_columns(first, path, relative),
         *_dialect(surveys),
         *_uncertain(found, first.kind),
     ]
@@ -59,7 +64,7 @@ def _rate(first: Guessed) -> Iterator[str]:
         yield f"rate_hz = {first.rate:.10g}  # as a number in the file says"
 
 
-def _columns(first: Guessed, path: Path) -> Iterator[str]:
+def _columns(first: Guessed, path: Path, relative: Collection[str]) -> Iterator[str]:
     """Lines of the channels, and a list of the other columns."""
     if first.run.time is not None:
         yield from _channel("time", first.run.time, path)
@@ -70,7 +75,7 @@ def _columns(first: Guessed, path: Path) -> Iterator[str]:
             continue
         more: dict[str, Any] = {}
         if moved_base and name != INPUT:
-            more["of"] = ABSOLUTE
+            more["of"] = RELATIVE if name in relative else ABSOLUTE
             yield f'{ASK}of: against the ground ("absolute"), or against what is the input ("relative")?'
         yield from _channel(name, channels[name], path, more)
     if not channels:

@@ -11,7 +11,7 @@ from wedgesweep.errors import InputError
 from wedgesweep.files import write_text
 from wedgesweep.guess import document
 from wedgesweep.guess.columns import INPUT
-from wedgesweep.guess.model import Numbers, numbers
+from wedgesweep.guess.model import Numbers, against_input, numbers
 from wedgesweep.guess.tests import Guessed, tests_of
 from wedgesweep.measured import Measurement, consistency
 from wedgesweep.measured.declarations import LOOP
@@ -41,17 +41,19 @@ def write(path: Path, files: Sequence[Path]) -> list[Path]:
     if problems:
         raise InputError(problems)
     tests, model, found = tests_of(surveys), path.parent / MODEL, UNKNOWN
+    relative: frozenset[str] = frozenset()
     turns = any(angular(each.unit) for each in tests[0].run.channels.values())
     for _ in range(MOST_LOOKS):
-        write_text(path, document.measured(path, model, tests, surveys, found))
+        write_text(path, document.measured(path, model, tests, surveys, found, relative))
         write_text(model, document.model(found, _is_forced(tests[0]), turns))
         try:
             measurement = measured.read(path)
         except InputError:
             break
-        before = tests, found
+        before = tests, found, relative
+        relative = against_input(measurement)
         tests, found = _with_signs(tests, measurement), numbers(measurement)
-        if (tests, found) == before:
+        if (tests, found, relative) == before:
             break
     return [path, model]
 

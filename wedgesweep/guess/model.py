@@ -23,6 +23,11 @@ ALIKE = 0.99
 MOVING = 0.1
 # Part of a free motion at its end that shows where it rests, and how much finer than a line spectra are read.
 TAIL, PADDED = 0.1, 8
+# What a motion leaves as relative over what it leaves as absolute, below which it is relative: 0.17 and 4 in
+# random motion, where it is clear; 0.7 for the absolute motion at one frequency of a frame that rubs on a wall.
+CLEARLY = 0.5
+# Derivatives of displacement.
+ORDER = {"displacement": 0, "velocity": 1, "acceleration": 2}
 # Tests that are looked at.
 TESTS = 6
 # The number of a test's model that its load is.
@@ -154,21 +159,41 @@ def _integral(acceleration: np.ndarray, rate: float, order: int) -> np.ndarray:
 
 
 def _on_base(tests: tuple[TestRecord, ...], measurement: Measurement) -> Numbers:
-    """Spring, damper and friction over the mass, by motions of mass and base where the mass has power.
+    """Spring, damper and friction over the mass, by motions of mass and base."""
+    name = next(iter(tests[0].responses))
+    relative = measurement.columns[name].get("of", "relative") == "relative"
+    _, (spring, damping, friction) = _shaken(tests, name, relative, str(measurement.recorded_input))
+    spring = spring or (2.0 * pi * float(np.median([_frequency(test) for test in tests]))) ** 2
+    return Numbers(1.0, spring, damping, friction, unseen=("mass",))
 
+
+def against_input(measurement: Measurement) -> frozenset[str]:
+    """Responses that a mass on a moving base explains better if they are relative to the base."""
+    tests, quantity = measurement.tests[:TESTS], str(measurement.recorded_input)
+    if quantity not in ORDER or any(test.input is None for test in tests):
+        return frozenset()
+    names = set.intersection(*(set(test.responses) for test in tests))
+    left = {(name, of): _shaken(tests, name, of, quantity)[0] for name in names for of in (False, True)}
+    return frozenset(name for name in names if left[name, True] < CLEARLY * left[name, False])
+
+
+def _shaken(
+    tests: tuple[TestRecord, ...], name: str, relative: bool, quantity: str
+) -> tuple[float, list[float]]:
+    """What spring, damper and friction over the mass leave of its acceleration where it has power, and they.
+
+    ``relative``: whether the response is the motion against the base, whose ``quantity`` is recorded.
     Friction opposes velocity as a damper does; that it does not grow with it shows across tests.
     """
-    order = {"displacement": 0, "velocity": 1, "acceleration": 2}
     rows, values = [], []
     for test in tests:
-        name, response = next(iter(test.responses.items()))
+        response = test.responses[name]
         assert test.input is not None
         omega, window = _frequencies(test), np.hanning(response.size)
         y, u = (np.fft.rfft((each - each.mean()) * window) for each in (response, test.input))
         used = (np.abs(y) ** 2 > LINES * np.max(np.abs(y) ** 2)) & (omega > 0.0)
-        rate = 1j * np.where(used, omega, inf)
-        y, u = y / rate ** order[name], u / rate ** order[str(measurement.recorded_input)]
-        relative = measurement.columns[name].get("of", "relative") == "relative"
+        rate = np.where(used, 1j * omega, inf)
+        y, u = y / rate ** ORDER[name], u / rate ** ORDER[quantity]
         stretch, absolute = (y, y + u) if relative else (y - u, y)
         velocity = np.where(used, 1j * omega * stretch, 0.0)
         direction = np.fft.rfft(np.sign(np.fft.irfft(velocity, response.size)) * window)
@@ -178,9 +203,8 @@ def _on_base(tests: tuple[TestRecord, ...], measurement: Measurement) -> Numbers
         values += [value.real / np.linalg.norm(value), value.imag / np.linalg.norm(value)]
     design, value = np.vstack(rows), np.concatenate(values)
     size = np.maximum(np.linalg.norm(design, axis=0), 1e-300)
-    spring, damping, friction = (nnls(design / size, value)[0] / size).tolist()
-    spring = spring or (2.0 * pi * float(np.median([_frequency(test) for test in tests]))) ** 2
-    return Numbers(1.0, spring, damping, friction, unseen=("mass",))
+    factors, left = nnls(design / size, value)
+    return float(left), (factors / size).tolist()
 
 
 def _frequencies(test: TestRecord) -> np.ndarray:
