@@ -131,9 +131,10 @@ def test_a_damper_does_not_stand_for_the_friction_of_a_shaken_mass(tmp_path):
     found = {
         key: float(re.search(rf"{key} = (\S+)", first)[1]) for key in ("spring_N_per_mm", "damping_N_s_per_m")
     }
-    assert found["spring_N_per_mm"] == pytest.approx(1e-3 * spring, rel=0.05)  # written as uncertain by 10 %
+    # Higher harmonics of a displacement are too small to count; the numbers are said to be good to 10 %.
+    assert found["spring_N_per_mm"] == pytest.approx(1e-3 * spring, rel=0.1)
     assert found["damping_N_s_per_m"] < 2.0 * damping
-    assert float(re.search(r"shows about (\S+) N", first)[1]) == pytest.approx(friction, rel=0.05)
+    assert float(re.search(r"shows about (\S+) N", first)[1]) == pytest.approx(friction, rel=0.1)
 
 
 def test_a_free_motion_begins_when_it_is_let_go(tmp_path):

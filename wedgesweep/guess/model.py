@@ -23,8 +23,8 @@ ALIKE = 0.99
 MOVING = 0.1
 # Part of a free motion at its end that shows where it rests, and how much finer than a line spectra are read.
 TAIL, PADDED = 0.1, 8
-# What a motion leaves as relative over what it leaves as absolute, below which it is relative: 0.17 and 4 in
-# random motion, where it is clear; 0.7 for the absolute motion at one frequency of a frame that rubs on a wall.
+# What a motion leaves as relative over what it leaves as absolute, below which it is relative. Random motion
+# has 0.17 if it is, and 4 if it is not; absolute motion at one frequency of a frame that rubs on a wall 0.7.
 CLEARLY = 0.5
 # Derivatives of displacement.
 ORDER = {"displacement": 0, "velocity": 1, "acceleration": 2}
