@@ -22,8 +22,8 @@ from wedgesweep.natural_units import FREQUENCY, LENGTH
 from wedgesweep.synthesize import plan
 from wedgesweep.synthesize.motion import NoMotion
 from wedgesweep.synthesize.options import NOISES
-from wedgesweep.synthesize.other_tables import loop
 from wedgesweep.synthesize.plan import PlannedTest
+from wedgesweep.synthesize.tables import loop
 from wedgesweep.synthesize.transients import transient
 
 TRANSIENT, LOOP, MIXED, WORSE, DAMPER = TIME_KINDS = ("transient", "loop", "mixed", "worse", "damper")

@@ -7,7 +7,6 @@ import pytest
 from scipy.signal import lfilter
 
 from wedgesweep.measured.frequency import (
-    drift,
     estimate_frequency,
     estimate_near,
     refined_frequency,
@@ -83,10 +82,10 @@ def test_few_cycles_raise_no_false_alarm():
 def test_drift_is_measured_with_its_sign(change):
     random = np.random.default_rng(8)
     t, signal = record(random, 20.0, 20.4, STRONG_HARMONICS, 0.04, change=change)
-    found, std = drift(t, signal, 20.0)
-    assert found == pytest.approx(change, abs=4.0 * std)
-    assert std < 1e-3
-    assert estimate_near(t, signal, 20.0).drifts
+    found = estimate_near(t, signal, 20.0)
+    assert found.drift == pytest.approx(change, abs=4.0 * found.drift_std)
+    assert found.drift_std < 1e-3
+    assert found.drifts
 
 
 def test_a_foreign_tone_is_no_drift():

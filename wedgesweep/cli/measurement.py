@@ -120,14 +120,14 @@ def _transient_rows(measurement: "Measurement") -> list[tuple[str, ...]]:
 
 def _transient_noise(windows: "Sequence[RecordWindow]") -> str:
     """Noise of the first response of a test, in its unit and as a share of that response at its largest."""
-    from wedgesweep.diagnose.transient.recorded_input import QUANTITIES_OF_MOTION
+    from wedgesweep.measured.declarations import MOTIONS
     from wedgesweep.measured.kinds import DISPLAY_UNITS
 
     order, signals = windows[0].orders[0], [each.channels[0] for each in windows]
     # The zero of an accelerometer is unknown.
     swing = max(0.5 * float(each.max() - each.min()) for each in signals)
     largest = max(each.length for each in windows) if order == 0 else swing
-    std, (size, unit) = windows[0].spectra[0].std, DISPLAY_UNITS[QUANTITIES_OF_MOTION[order]]
+    std, (size, unit) = windows[0].spectra[0].std, DISPLAY_UNITS[MOTIONS[order]]
     return f"{std / size:.3g} {unit} ({100.0 * std / largest:.2g} %)"
 
 
@@ -161,9 +161,9 @@ def _warn_of_noise(test: "TestRecord", name: str, share: float, mend: str) -> No
 
 def _steady_rows(measurement: "Measurement", size: float) -> list[tuple[str, ...]]:
     """What is compared of each steady test; input amplitudes are in a unit of some size."""
-    from wedgesweep.diagnose.steady.from_measurement import column_load_of, compared, recorded_spectra
+    from wedgesweep.diagnose.steady.from_measurement import column_load_of, recorded_spectra
 
-    names, spectra = compared(measurement), recorded_spectra(measurement)
+    names, spectra = measurement.compared(measurement.tests[0]), recorded_spectra(measurement)
     for test, own in zip(measurement.tests, spectra, strict=True):
         for name, share in zip(names, own.sample_noise / own.rms, strict=False):
             _warn_of_noise(test, name, float(share), "excite more")

@@ -2,17 +2,16 @@
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import pairwise, permutations
 
 import numpy as np
 
-from wedgesweep.measured.declarations import QUANTITIES
+from wedgesweep.measured.declarations import MOTIONS, QUANTITIES
 from wedgesweep.readers.survey import Column
 from wedgesweep.readers.table import DATETIME
 from wedgesweep.units import DAY, FOREIGN, UNITS, angular, is_unit, usual
 
-MOTIONS = ("displacement", "velocity", "acceleration")
 FORCE, INPUT, TIME = "force", "input", "time"
 # Parts of names, and whole names, of each quantity; the first quantity with a match has the column.
 STEMS = {
@@ -76,7 +75,7 @@ class Chosen:
 
     column: Column
     unit: str
-    keys: Mapping[str, object] | None = None
+    keys: Mapping[str, object] = field(default_factory=dict)
     questions: tuple[str, ...] = ()
 
     @property

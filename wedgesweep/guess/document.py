@@ -69,7 +69,7 @@ def _columns(first: Guessed, path: Path, relative: Collection[str]) -> Iterator[
     if first.run.time is not None:
         yield from _channel("time", first.run.time, path)
     channels = first.run.channels
-    moved_base = INPUT in channels and (channels[INPUT].keys or {}).get("quantity") != "force"
+    moved_base = INPUT in channels and channels[INPUT].keys.get("quantity") != "force"
     for name in ORDER:
         if name not in channels:
             continue
@@ -99,7 +99,7 @@ def _channel(name: str, chosen: Chosen, path: Path, more: Mapping[str, Any] | No
 
 def _keys(chosen: Chosen, path: Path) -> dict[str, Any]:
     """All keys of a channel, with paths from a measured.toml."""
-    keys = {"column": chosen.column.name, "unit": chosen.unit, **(chosen.keys or {})}
+    keys = {"column": chosen.column.name, "unit": chosen.unit, **chosen.keys}
     return {key: _relative(value, path) if isinstance(value, Path) else value for key, value in keys.items()}
 
 

@@ -76,4 +76,4 @@ def _with_signs(tests: Sequence[Guessed], measurement: Measurement) -> list[Gues
 
 def _is_forced(test: Guessed) -> bool:
     given = test.run.channels.get(INPUT)
-    return test.kind == LOOP or (given is not None and (given.keys or {}).get("quantity") == "force")
+    return test.kind == LOOP or (given is not None and given.keys.get("quantity") == "force")

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import numpy as np
 
-from wedgesweep.guess.columns import FORCE, HUGE, INPUT, MOTIONS, Chosen, Run, choose, runs_of, with_units
+from wedgesweep.guess.columns import FORCE, HUGE, INPUT, Chosen, Run, choose, runs_of, with_units
 from wedgesweep.guess.kind import WHOLE, Part, from_release, from_steady, kind_of, parts_of
-from wedgesweep.measured.declarations import LOOP, STEADY, TRANSIENT
+from wedgesweep.measured.declarations import LOOP, MOTIONS, STEADY, TRANSIENT
 from wedgesweep.readers.survey import Survey
 from wedgesweep.units import UNITS
 
@@ -64,7 +64,7 @@ def _joined(test: Guessed, other: Guessed) -> Guessed:
     rate, both = _rate_beside(test, other), {**test.run.channels, **other.run.channels}
     channels = with_units({name: each.column for name, each in both.items()})
     for name in other.run.channels:
-        keys = {**(channels[name].keys or {}), "file": other.file, **rate}
+        keys = {**channels[name].keys, "file": other.file, **rate}
         channels[name] = replace(channels[name], keys=keys)
     return replace(test, run=replace(test.run, channels=channels))
 
@@ -87,7 +87,7 @@ def _with_kind(test: Guessed) -> list[Guessed]:
         channels.pop(FORCE, None)
     elif FORCE in channels and "displacement" not in channels:
         given = channels.pop(FORCE)
-        channels[INPUT] = replace(given, keys={**(given.keys or {}), "quantity": FORCE})
+        channels[INPUT] = replace(given, keys={**given.keys, "quantity": FORCE})
     time, signals = _evenly(replace(test, run=replace(test.run, channels=channels)))
     kind, reason = kind_of(signals, time)
     if kind == LOOP:
@@ -106,9 +106,7 @@ def _with_kind(test: Guessed) -> list[Guessed]:
 
 def _compared(channels: Mapping[str, Chosen]) -> dict[str, Chosen]:
     """Channels of which two responses at most are compared."""
-    responses = [
-        name for name in MOTIONS if name in channels and not (channels[name].keys or {}).get("derived")
-    ]
+    responses = [name for name in MOTIONS if name in channels and not channels[name].keys.get("derived")]
     if len(responses) < 3:
         return dict(channels)
     return {name: each for name, each in channels.items() if name != "acceleration"}
@@ -140,7 +138,7 @@ def _evenly(test: Guessed) -> tuple[np.ndarray, dict[str, np.ndarray]]:
     """Even times (n,) in s and signals (n,), as far as a look needs them; those of other files are 0."""
     stamps = _stamps(test)
     channels = test.run.channels
-    own = {name: each.values for name, each in channels.items() if "file" not in (each.keys or {})}
+    own = {name: each.values for name, each in channels.items() if "file" not in each.keys}
     good = np.abs(stamps) < HUGE
     order = np.argsort(stamps[good], kind="stable")
     time = np.linspace(stamps[good].min(), stamps[good].max(), int(good.sum()))

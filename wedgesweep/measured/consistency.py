@@ -8,7 +8,7 @@ import numpy as np
 from scipy.signal import butter, sosfiltfilt
 
 from wedgesweep.measured.cycles import cut
-from wedgesweep.measured.declarations import INPUT, STEADY, TRANSIENT
+from wedgesweep.measured.declarations import INPUT, RELATIVE, STEADY, TRANSIENT
 from wedgesweep.measured.frequency import FEWEST_CYCLES, estimate_frequency
 from wedgesweep.measured.measurement import Measurement, TestRecord
 from wedgesweep.measured.stationarity import median_frequency
@@ -69,7 +69,7 @@ def _force(test: TestRecord, measurement: Measurement) -> np.ndarray | None:
 def _motion(test: TestRecord, measurement: Measurement) -> tuple[np.ndarray, np.ndarray]:
     """Displacement and velocity (n,) of the mass in the direction of the force."""
     name = "displacement" if test.displacement is not None else "velocity"
-    relative = measurement.columns[name].get("of", "relative") == "relative"
+    relative = measurement.motion_of(name) == RELATIVE
     sign = -1.0 if measurement.model.system == "suspension" and relative else 1.0
     step = 1.0 / test.sampling_rate
     if test.displacement is None:

@@ -16,13 +16,14 @@ from wedgesweep.uncertain import DISTORTION
 from wedgesweep.units import UNITS
 
 # Channels that show the response, and what a recorded input may be.
-RESPONSES = ("displacement", "velocity", "acceleration", "force")
+MOTIONS = ("displacement", "velocity", "acceleration")
+RESPONSES = (*MOTIONS, "force")
 INPUT = "input"
 # A recorded force on the mass beside what drives it.
 KNOWN_FORCE = "known_force"
 # The load of a column.
 NORMAL_FORCE = "normal_force"
-QUANTITIES = ("displacement", "velocity", "acceleration", "force")
+QUANTITIES = RESPONSES
 RELATIVE, ABSOLUTE = "relative", "absolute"
 # Effects that scale a number of the model, which may be declared uncertain.
 PARAMETERS = tuple(name for name in SCALES if EFFECTS[name].family == OF_THE_MODEL)
@@ -34,8 +35,8 @@ STEADY, TRANSIENT, LOOP = KINDS = ("steady", "transient", "loop")
 MIXED = "mixed"
 # Channels of each kind where several kinds share one declaration.
 CHANNELS = {
-    STEADY: ("time", "displacement", "velocity", "acceleration", INPUT, KNOWN_FORCE, NORMAL_FORCE),
-    TRANSIENT: ("time", "displacement", "velocity", "acceleration", INPUT, KNOWN_FORCE),
+    STEADY: ("time", *MOTIONS, INPUT, KNOWN_FORCE, NORMAL_FORCE),
+    TRANSIENT: ("time", *MOTIONS, INPUT, KNOWN_FORCE),
     LOOP: ("time", "displacement", "force", KNOWN_FORCE),
 }
 

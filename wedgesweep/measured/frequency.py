@@ -89,12 +89,6 @@ def refined_frequency(time: np.ndarray, displacement: np.ndarray, stated: float 
     return estimate.frequency if harmless < off < NEGLIGIBLE and estimate.differs(stated) else stated
 
 
-def drift(time: np.ndarray, displacement: np.ndarray, frequency: float) -> tuple[float, float]:
-    """Relative change of a frequency (Hz) over the record, and its standard error."""
-    estimate = estimate_near(time, displacement, frequency)
-    return estimate.drift, estimate.drift_std
-
-
 def estimate_near(
     time: np.ndarray, displacement: np.ndarray, frequency: float, reach: float = RANGE
 ) -> FrequencyEstimate:

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from wedgesweep.hints import show
-from wedgesweep.measured.declarations import INPUT, KNOWN_FORCE, LOOP, STEADY, TRANSIENT
+from wedgesweep.measured.declarations import CHANNELS, LOOP, MOTIONS, STEADY, TRANSIENT
 from wedgesweep.measured.measurement import TestRecord
 
 # A motion that comes back by less than this share of its range goes one way.
@@ -22,13 +22,10 @@ FEWEST = 64
 # Keys of a test under a sine, and of a loop.
 OF_A_SINE, OF_A_LOOP = ("frequency_hz", "amplitude_mm", "amplitude_N"), ("lowpass_hz",)
 OF_A_TRANSIENT, NOT_OF_A_SINE = ("undriven",), ("repeat_of",)
-# Responses of a transient, of which it has at least one.
-MOTIONS = ("displacement", "velocity", "acceleration")
 # Sizes in SI, and names, of the units in which they are shown.
 DISPLAY_UNITS = {"displacement": (1e-3, "mm"), "velocity": (1e-3, "mm/s"), "acceleration": (1.0, "m/s^2")}
-# What is compared, and what else a test may have, by kind.
+# What a test must have, by kind.
 NEEDED = {"transient": (), "loop": ("displacement", "force")}
-OPTIONAL = {"transient": (*MOTIONS, INPUT, KNOWN_FORCE), "loop": (KNOWN_FORCE,)}
 MEANING = {
     "transient": "a transient is a motion from some start, free or under a recorded input",
     "loop": "a loop is the force under a recorded displacement",
@@ -37,13 +34,12 @@ MEANING = {
 
 def column_faults(columns: Mapping[str, Any], kind: str) -> list[str]:
     """Faults of the channels of tests that are not steady, as "key: fault"."""
-    needed, known = NEEDED[kind], ("time", *NEEDED[kind], *OPTIONAL[kind])
-    missing = [f"{name}: missing; {MEANING[kind]}" for name in needed if name not in columns]
+    missing = [f"{name}: missing; {MEANING[kind]}" for name in NEEDED[kind] if name not in columns]
     if kind == TRANSIENT and not any(name in columns for name in MOTIONS):
         missing = [f"displacement: missing, and so are velocity and acceleration; {MEANING[kind]}"]
     if kind == TRANSIENT and "displacement" not in columns and columns.get("velocity", {}).get("derived"):
         missing.append("velocity.derived: there is no displacement that it was computed from; give that one")
-    extra = [f"{name}: not used; {MEANING[kind]}, omit it" for name in columns if name not in known]
+    extra = [f"{name}: not used; {MEANING[kind]}, omit it" for name in columns if name not in CHANNELS[kind]]
     return missing + extra
 
 

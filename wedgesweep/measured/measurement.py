@@ -10,7 +10,7 @@ import numpy as np
 from wedgesweep.config import Config
 from wedgesweep.effects import channel_delay
 from wedgesweep.errors import InputError
-from wedgesweep.measured.declarations import MIXED, columns_of
+from wedgesweep.measured.declarations import MIXED, MOTIONS, RELATIVE, columns_of
 from wedgesweep.measured.frequency import refined_frequency
 from wedgesweep.measured.model import with_numbers
 
@@ -69,7 +69,7 @@ class TestRecord:
     @property
     def responses(self) -> dict[str, np.ndarray]:
         """The measured responses (n,) by name."""
-        named = {name: getattr(self, name) for name in ("displacement", "velocity", "acceleration")}
+        named = {name: getattr(self, name) for name in MOTIONS}
         return {name: samples for name, samples in named.items() if samples is not None}
 
     @property
@@ -137,6 +137,14 @@ class Measurement:
     def recorded_input(self) -> str | None:
         """What was recorded of the input, None if its amplitude is stated instead."""
         return self.columns["input"]["quantity"] if "input" in self.columns else None
+
+    def compared(self, test: TestRecord) -> list[str]:
+        """Names of the responses of a test that are measurements of their own."""
+        return [name for name in test.responses if name != "velocity" or not self.derived_velocity]
+
+    def motion_of(self, channel: str) -> str:
+        """The motion that a channel shows: RELATIVE to the base, or ABSOLUTE."""
+        return self.columns[channel].get("of", RELATIVE)
 
     def model_of(self, test: TestRecord) -> Config:
         """The base model with the numbers of a test."""

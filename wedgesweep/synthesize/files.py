@@ -14,7 +14,7 @@ from wedgesweep.config import Config
 from wedgesweep.errors import InputError
 from wedgesweep.files import beside
 from wedgesweep.measured.declarations import LOOP, STEADY, TRANSIENT
-from wedgesweep.synthesize.motion import RTOL, Motion
+from wedgesweep.synthesize.motion import RTOL
 from wedgesweep.synthesize.options import Options
 from wedgesweep.synthesize.plan import Plan
 from wedgesweep.synthesize.truth import Truth
@@ -26,6 +26,7 @@ class Table:
     """Content of a CSV file: time in s, displacement in mm, velocity in mm/s, shape (n,) each.
 
     ``input``: as recorded, in its SI unit; ``force`` and ``load`` (N); None where not measured.
+    ``settle_periods``: after how many periods a steady motion was recorded.
     """
 
     time: np.ndarray
@@ -34,6 +35,7 @@ class Table:
     input: np.ndarray | None = None
     force: np.ndarray | None = None
     load: np.ndarray | None = None
+    settle_periods: int | None = None
 
 
 def require_free(directory: Path) -> None:
@@ -111,7 +113,7 @@ def measured(title: str, config: Config, plan: Plan, options: Options) -> dict[s
     return rotation.written(document)
 
 
-def truth_document(truth: Truth, steady: Truth, motions: list[Motion], options: Options) -> dict[str, Any]:
+def truth_document(truth: Truth, tables: Sequence[Table], options: Options) -> dict[str, Any]:
     """The document of truth.json: what a diagnosis should find, in the keys and units of a config."""
     tests: list[dict[str, Any]] = [
         {
@@ -121,9 +123,10 @@ def truth_document(truth: Truth, steady: Truth, motions: list[Motion], options: 
             "phase_deg": test.phase_deg,
             "stray_vibration_phase_deg": test.stray_phase_deg,
             "sampling_hz": test.sampling_hz,
-            "settle_periods": motion.settle_periods,
+            "settle_periods": table.settle_periods,
         }
-        for test, motion in zip(steady.tests, motions, strict=True)
+        for test, table in zip(truth.tests, tables, strict=True)
+        if test.plan.kind == STEADY
     ]
     tests += [
         {"kind": test.plan.kind, "motion": test.plan.motion, "sampling_hz": test.sampling_hz}

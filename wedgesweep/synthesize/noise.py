@@ -15,9 +15,14 @@ Channels = tuple[np.ndarray, np.ndarray]
 NoiseKind = Callable[[Channels, float, float, np.random.Generator], Channels]
 
 
+def of(signal: np.ndarray, level: float, random: np.random.Generator) -> np.ndarray:
+    """White noise (n,) of a signal (n,)."""
+    return level * signal.std() * random.normal(size=signal.size)
+
+
 def white(channels: Channels, level: float, step: float, random: np.random.Generator) -> Channels:
     """Independent normal noise on displacement and velocity, shape (n,) each, ``step`` (s) apart."""
-    displacement, velocity = (each + level * each.std() * random.normal(size=each.size) for each in channels)
+    displacement, velocity = (each + of(each, level, random) for each in channels)
     return displacement, velocity
 
 

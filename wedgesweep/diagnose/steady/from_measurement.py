@@ -69,20 +69,12 @@ def _loads(measurement: Measurement, data: HarmonicData) -> tuple[ColumnLoad | N
 
 
 def recorded_spectra(measurement: Measurement) -> tuple[Spectrum, ...]:
-    """Spectra of the responses of all tests, by the names of ``compared``, in the units of the records."""
+    """Spectra of the compared responses of all tests, in the units of the records."""
     if measurement.recorded_input is None:
         return _with_tone(measurement)[1]
-    names = compared(measurement)
-    signals = [np.array([test.responses[name] for name in names]) for test in measurement.tests]
+    signals = [[test.responses[name] for name in measurement.compared(test)] for test in measurement.tests]
     both = zip(measurement.tests, signals, strict=True)
-    return tuple(fitted(test.time, own, test.refined_frequency) for test, own in both)
-
-
-def compared(measurement: Measurement) -> list[str]:
-    """Names of the responses that are compared: a velocity that was derived from a displacement is none."""
-    names = ("displacement", "velocity", "acceleration")
-    derived = ("velocity",) if measurement.derived_velocity else ()
-    return [name for name in names if name in measurement.columns and name not in derived]
+    return tuple(fitted(test.time, np.array(own), test.refined_frequency) for test, own in both)
 
 
 def _with_tone(measurement: Measurement) -> tuple[tone.Tone | None, tuple[Spectrum, ...]]:
@@ -167,10 +159,8 @@ Channel = tuple[str, str, str]
 def _converted(measurement: Measurement) -> list[Channel]:
     """The compared channels: the first one is compared as a displacement, a second one as a velocity."""
     slots = ("displacement", "velocity")
-    return [
-        (name, slots[i], measurement.columns[name].get("of", "relative"))
-        for i, name in enumerate(compared(measurement))
-    ]
+    names = measurement.compared(measurement.tests[0])
+    return [(name, slots[i], measurement.motion_of(name)) for i, name in enumerate(names)]
 
 
 def _read_test(

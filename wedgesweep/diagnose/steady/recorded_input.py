@@ -23,6 +23,7 @@ from wedgesweep.diagnose.steady.harmonic_data import AMPLITUDE, HarmonicData, Si
 from wedgesweep.diagnose.steady.spectra import Spectrum
 from wedgesweep.diagnose.steady.stated_input import LEAST_STEP
 from wedgesweep.effects.channel_delay import NAME as DELAY
+from wedgesweep.sampled_input import INTEGRATED
 
 # Effects of sensors: the number that is set, and its value without the effect.
 SENSORS = (("displacement_gain", "scale", 1.0), ("velocity_lag", "time", 0.0))
@@ -229,5 +230,5 @@ def input_harmonics(spectrum: Spectrum, quantity: str) -> tuple[np.ndarray, np.n
 
 def motion_factor(spectrum: Spectrum, quantity: str) -> np.ndarray:
     """What turns the harmonics (N,) of a quantity into those of the displacement; a force stays one."""
-    order = 0 if quantity == "force" else ("displacement", "velocity", "acceleration").index(quantity)
-    return (2j * np.pi * spectrum.frequency * np.arange(1, spectrum.mean.shape[1] + 1)) ** -order
+    rate = 2j * np.pi * spectrum.frequency * np.arange(1, spectrum.mean.shape[1] + 1)
+    return rate ** -INTEGRATED[quantity]

@@ -7,12 +7,13 @@ import numpy as np
 from wedgesweep.diagnose.evaluation import Point
 from wedgesweep.diagnose.fit_data import Arrays
 from wedgesweep.diagnose.transient.window import RecordWindow
+from wedgesweep.measured.declarations import MOTIONS
 
 if TYPE_CHECKING:
     from wedgesweep.diagnose.transient.transient_data import TransientData
 
 BY_SAMPLE, BY_CHANNEL = ("test", "sample"), ("test", "channel", "sample")
-CHANNELS, CHANNEL_UNIT = ("displacement", "velocity", "acceleration"), "m, m/s or m/s^2"
+CHANNEL_UNIT = "m, m/s or m/s^2"
 
 
 def described(data: "TransientData", point: Point) -> list[dict[str, Any]]:
@@ -67,4 +68,4 @@ def arrays(data: "TransientData", simulated: np.ndarray) -> Arrays:
         "sample_noise": (BY_CHANNEL[:2], noise, CHANNEL_UNIT, "noise of a sample"),
     }
     orders = max((own.orders for own in data.windows), key=len)
-    return Arrays(variables, {"channel": [CHANNELS[order] for order in orders]})
+    return Arrays(variables, {"channel": [MOTIONS[order] for order in orders]})

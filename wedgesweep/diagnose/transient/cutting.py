@@ -50,7 +50,7 @@ class Recorded(NamedTuple):
     input: RecordedInput | None
     number: int
     orders: tuple[int, ...]
-    shares: tuple[float, ...] = ()
+    shares: tuple[float, ...]
 
 
 def highest_compared(record: Recorded, model: Config) -> float:

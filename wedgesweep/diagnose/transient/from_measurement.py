@@ -6,11 +6,12 @@ from wedgesweep.diagnose.channel_factors import channel_factors
 from wedgesweep.diagnose.noise_spectrum import NoiseSpectrum
 from wedgesweep.diagnose.transient.cutting import FEWEST, Recorded, windows
 from wedgesweep.diagnose.transient.noise import Channels, NoiseEvidence, evidence_of_noise, from_repeats
-from wedgesweep.diagnose.transient.recorded_input import QUANTITIES_OF_MOTION, RecordedInput
+from wedgesweep.diagnose.transient.recorded_input import RecordedInput
 from wedgesweep.diagnose.transient.transient_data import TransientData
 from wedgesweep.diagnose.transient.window import RecordWindow
 from wedgesweep.errors import InputError
 from wedgesweep.measured import Measurement, TestRecord
+from wedgesweep.measured.declarations import MOTIONS
 
 # Parts of a record, in the loudest of which its motion must be larger than its noise.
 PARTS = 8
@@ -24,15 +25,11 @@ def transient_data(measurement: Measurement) -> TransientData:
     fewest = FEWEST if len(tests) == 1 else 1
     found: list[RecordWindow] = []
     for number, test in enumerate(tests):
-        model, given = measurement.model_of(test), _recorded_input(measurement, test)
-        orders = tuple(QUANTITIES_OF_MOTION.index(name) for name in _names(measurement, test))
-        record = Recorded(
-            test.name, channels[number], test.sampling_rate, spectra[number], given, number, orders
-        )
-        record = _as_simulated(record, measurement)
-        _refuse_noise(test.file, channels[number], spectra[number])
+        own = {order: spectra[number, order] for order in channels[number]}
         try:
-            found += windows(record, model, measurement.law, fewest)
+            _refuse_noise(channels[number], own)
+            record = _record(measurement, number, channels[number], list(own.values()))
+            found += windows(record, measurement.model_of(test), measurement.law, fewest)
         except InputError as error:
             raise InputError([f"{test.file}: {problem}" for problem in error.problems]) from error
     return TransientData(
@@ -44,64 +41,49 @@ def transient_data(measurement: Measurement) -> TransientData:
     )
 
 
-def _refuse_noise(file: str, channels: np.ndarray, spectra: list[NoiseSpectrum]) -> None:
-    """Raise InputError if the motion is smaller than the noise of all channels, where it is largest."""
-    parts = [[part.std() for part in np.array_split(channel, PARTS)] for channel in channels]
-    shares = [
-        spectrum.std / max(float(np.sqrt(max(max(own) ** 2 - spectrum.std**2, 0.0))), 1e-300)
-        for own, spectrum in zip(parts, spectra, strict=True)
-    ]
-    if min(shares) > 1.0:
-        problem = f"noise is {100.0 * min(min(shares), 9.99):.0f} % of the motion where that is largest"
-        raise InputError([f"{file}: {problem}; excite more, or measure it with less noise"])
-
-
-def _names(measurement: Measurement, test: TestRecord) -> list[str]:
-    """Channels that are measurements of their own."""
-    derived = ("velocity",) if measurement.derived_velocity else ()
-    return [name for name in QUANTITIES_OF_MOTION if getattr(test, name) is not None and name not in derived]
-
-
-def _channels(measurement: Measurement, test: TestRecord) -> np.ndarray:
-    """Channels (C, n) as recorded."""
-    return np.array([getattr(test, name) for name in _names(measurement, test)])
-
-
-def _recorded_input(measurement: Measurement, test: TestRecord) -> RecordedInput | None:
-    if test.input is None or measurement.recorded_input is None:
-        return None
-    return RecordedInput(test.input, measurement.recorded_input, test.sampling_rate)
-
-
-def _as_simulated(record: Recorded, measurement: Measurement) -> Recorded:
-    """The record with its channels as the motion that is simulated."""
-    test = measurement.tests[record.number]
-    model = measurement.model_of(test)
-    named = [measurement.columns[name].get("of", "relative") for name in _names(measurement, test)]
-    both = [channel_factors(model, of) for of in named]
-    channels = record.channels * np.array([factor for factor, _ in both])[:, None]
-    shares = tuple(share for _, share in both)
-    if record.input is not None:
-        for own, order, share in zip(channels, record.orders, shares, strict=True):
-            if share:
-                own += share * record.input.derivative(order)
-    return record._replace(channels=channels, shares=shares)
+def _channels(measurement: Measurement, test: TestRecord) -> Channels:
+    """Channels as recorded that are measurements of their own."""
+    return {MOTIONS.index(name): test.responses[name] for name in measurement.compared(test)}
 
 
 def _noise(
-    measurement: Measurement, channels: list[np.ndarray]
-) -> tuple[tuple[NoiseEvidence, ...], list[list[NoiseSpectrum]]]:
-    """Evidence of the noise, and the noise of each channel of each test."""
-    tests, orders = measurement.tests, range(len(QUANTITIES_OF_MOTION))
-    declared = [measurement.columns.get(name, {}) for name in QUANTITIES_OF_MOTION]
-    of = {order: declared[order].get("of", "relative") for order in orders}
-    by_order: list[Channels] = [
-        dict(zip(map(QUANTITIES_OF_MOTION.index, _names(measurement, test)), own, strict=True))
-        for test, own in zip(tests, channels, strict=True)
-    ]
-    evidence = evidence_of_noise(by_order, of, [test.sampling_rate for test in tests])
+    measurement: Measurement, channels: list[Channels]
+) -> tuple[tuple[NoiseEvidence, ...], dict[tuple[int, int], NoiseSpectrum]]:
+    """Evidence of the noise, and the noise of each channel of each test, by number and order."""
+    orders = {order for own in channels for order in own}
+    of = {order: measurement.motion_of(MOTIONS[order]) for order in orders}
+    evidence = evidence_of_noise(channels, of, [test.sampling_rate for test in measurement.tests])
     found = {key: each for one in evidence for key, each in one.bounds.most.items()}
-    repeated = from_repeats(tests, by_order)
-    found |= {key: each.up_to(found[key].highest) for key, each in repeated.items()}
-    spectra = [[found[t, order] for order in sorted(its)] for t, its in enumerate(by_order)]
-    return evidence, spectra
+    repeated = from_repeats(measurement.tests, channels)
+    return evidence, found | {key: each.up_to(found[key].highest) for key, each in repeated.items()}
+
+
+def _refuse_noise(channels: Channels, spectra: dict[int, NoiseSpectrum]) -> None:
+    """Raise InputError if the motion is smaller than the noise of all channels, where it is largest."""
+    shares = []
+    for order, samples in channels.items():
+        largest, std = max(part.std() for part in np.array_split(samples, PARTS)), spectra[order].std
+        shares.append(std / max(float(np.sqrt(max(largest**2 - std**2, 0.0))), 1e-300))
+    if min(shares) > 1.0:
+        problem = f"noise is {100.0 * min(min(shares), 9.99):.0f} % of the motion where that is largest"
+        raise InputError([f"{problem}; excite more, or measure it with less noise"])
+
+
+def _record(
+    measurement: Measurement, number: int, channels: Channels, spectra: list[NoiseSpectrum]
+) -> Recorded:
+    """The record of a test, its channels as the motion that is simulated."""
+    test, given = measurement.tests[number], None
+    if test.input is not None and measurement.recorded_input is not None:
+        given = RecordedInput(test.input, measurement.recorded_input, test.sampling_rate)
+    model = measurement.model_of(test)
+    factors = [channel_factors(model, measurement.motion_of(MOTIONS[order])) for order in channels]
+    converted = [
+        factor * samples + (share * given.derivative(order) if given and share else 0.0)
+        for (order, samples), (factor, share) in zip(channels.items(), factors, strict=True)
+    ]
+    shares = tuple(share for _, share in factors)
+    orders = tuple(channels)
+    return Recorded(
+        test.name, np.array(converted), test.sampling_rate, spectra, given, number, orders, shares
+    )

@@ -27,7 +27,6 @@ SETTLING = 2.0
 LARGEST_NOISE = 0.05
 # Bins over which spectra of input and response are averaged, as a share of all.
 AVERAGED = 0.01
-QUANTITIES_OF_MOTION = ("displacement", "velocity", "acceleration")
 
 
 @dataclass(frozen=True, eq=False)
