@@ -120,14 +120,14 @@ def test_the_difference_of_two_channels_is_noise_of_both(pole):
 
 
 @pytest.mark.acceptance
-@pytest.mark.parametrize(("pole", "orders"), [(0.0, (0, 1)), (0.5, (0,)), (0.9, (0, 1)), (0.9, (1,))])
+@pytest.mark.parametrize(("pole", "orders"), [(0.5, (0, 1)), (0.5, (0,)), (0.9, (0, 1)), (0.9, (1,))])
 def test_noise_is_told_at_the_frequencies_of_the_motion(pole, orders):
     found = np.array([ratios(pole, seed, orders) for seed in range(2)])
     # Too low an estimate would look like a misfit, so that it errs to the other side.
     assert found.min() > 0.3
     assert np.quantile(found, 0.1) > 0.6
     assert np.median(found[..., 1:]) < 2.5
-    if len(orders) == 2:
+    if len(orders) == 2:  # up to 9.3, if the channels were not compared with each other
         assert found[..., 1:].max() < 4.0
 
 

