@@ -5,15 +5,19 @@ Compiled once for each type of record, as solvers compile them.
 
 from inspect import signature
 
+import numpy as np
+
 from wedgesweep import friction
 from wedgesweep.compiled import compiled, function_of
 from wedgesweep.effects import states
+from wedgesweep.hybrid.accumulators import empty
+from wedgesweep.hybrid.recorder import Recorder
 from wedgesweep.hybrid.state import NO_EVENT, State
 from wedgesweep.hybrid.step import dense_output
 from wedgesweep.solvers import explicit, implicit, period_detection
 from wedgesweep.systems.suspension import (
     filippov,
-    first_event,
+    linear_events,
     linear_slip,
     newton,
     parameters,
@@ -89,9 +93,19 @@ def implicit_step(t, h, y, mode, p, rtol):
 
 
 @compiled
+def _slid(t, stop, y, mode, p, recorder):
+    oscillator = linear_slip.linear_oscillator(y, mode, p)
+    state = State(t, y, mode, NO_EVENT, 0.0)
+    end, event = linear_events.follow_linear(state, stop, oscillator, p, False, recorder)
+    return oscillator, end.t, event
+
+
+NOTHING_RECORDED = Recorder(
+    *(0.0, 1.0, False, False, empty(), np.zeros(0), np.zeros(0)),
+    *(np.zeros((2, 0)), np.zeros(0, bool), np.zeros(0)),
+)
+
+
 def slid(t, stop, y, mode, p):
     """Oscillator of a mode, and where it ends: time and event."""
-    oscillator = linear_slip.linear_oscillator(y, mode, p)
-    phase = linear_slip.phase_at(t, y[0], y[1], oscillator, p)
-    end = first_event.slip_to_event(State(t, y, mode, NO_EVENT, 0.0), phase, stop, oscillator, p)
-    return oscillator, end.t, end.event
+    return _slid(t, stop, y, mode, p, NOTHING_RECORDED)

@@ -2,7 +2,7 @@
 
 from wedgesweep.compiled import compiled
 from wedgesweep.hybrid import interface
-from wedgesweep.systems.suspension import breakaway, filippov
+from wedgesweep.systems.suspension import filippov, set_valued
 from wedgesweep.systems.suspension.modes import HELD, ContactMode
 from wedgesweep.systems.suspension.unilateral import contacts, hybrid, impact, modes, motion
 
@@ -56,8 +56,8 @@ def contacts_at(t, y, opening):
 @compiled
 def breakaway_inputs(y, closed):
     """Base accelerations below and above which a bolster at rest breaks away; NaN if a face opens before."""
-    forward = breakaway.breakaway_input(y, 1, 0, closed[0])
-    return forward, breakaway.breakaway_input(y, -1, 0, closed[0])
+    forward = set_valued.breakaway_input(y, 1, 0, closed[0])
+    return forward, set_valued.breakaway_input(y, -1, 0, closed[0])
 
 
 @compiled

@@ -26,9 +26,23 @@ AMPLITUDE = 1e-3
 MARGIN = 1e-10
 
 
-def record(law="coulomb", amplitude=AMPLITUDE, beta=1.2, restitution=0.0, friction=None, **suspension):
+FIXTURE = {"fixture_resonance": {"frequency": 40.0, "damping_ratio": 0.05}}
+GUIDE = {"guide_friction": {"force": 1.5}}
+OTHERS = {
+    "viscous_damping": {"coefficient": 8.0},
+    "end_stop": {"clearance": 1e-3, "stiffness": 2e4},
+    "stribeck": {"velocity": 5e-3, "peak": 0.05},
+    "input_distortion": {"second": 0.1},
+}
+
+
+def record(
+    law="coulomb", amplitude=AMPLITUDE, beta=1.2, restitution=0.0, friction=None, effects=None, **suspension
+):
     joints = {"joints": "unilateral", "restitution": restitution}
-    return parameters.record(law, amplitude, beta * OMEGA_N, joints | suspension, friction or {})
+    return parameters.record(
+        law, amplitude, beta * OMEGA_N, joints | suspension, friction or {}, effects or {}
+    )
 
 
 def vectors(p):
@@ -190,40 +204,54 @@ def test_two_faces_that_hit_in_turn_ever_faster_close():
     assert found[1][2] == pytest.approx(found[0][2], rel=1e-6)
 
 
-CASES = [("coulomb", 2.5, 1e-3, 0.3), ("exponential", 1.2, 1e-3, 0.0), ("static-dynamic", 1.0, 1e-3, 0.3)]
+def settled(case, periods=150, rtol=1e-8, harmonics=3):
+    """Numbers after some settling periods."""
+    run = Settings(method="event-driven", rtol=rtol, duration=None, settle_periods=periods, kept_periods=2)
+    return respond(case, run, harmonics)[0].numbers
+
+
+CASES = [
+    *(("coulomb", 2.5, 1e-3, 0.3, {}), ("exponential", 1.2, 1e-3, 0.0, {})),
+    ("static-dynamic", 1.0, 1e-3, 0.3, {}),
+    *((law, 1.3, 2e-3, 0.0, FIXTURE | GUIDE) for law in LAW_NAMES),
+]
 
 
 @pytest.mark.acceptance
-@pytest.mark.parametrize(("law", "beta", "amplitude", "restitution"), CASES)
-def test_both_solvers_agree_through_impacts(law, beta, amplitude, restitution):
-    case = record(law, amplitude, beta, restitution)
-    window, found = Window(beta * OMEGA_N, 2, 2, 64), []
+@pytest.mark.parametrize(("law", "beta", "amplitude", "restitution", "effects"), CASES)
+def test_both_solvers_agree_through_impacts(law, beta, amplitude, restitution, effects):
+    case = record(law, amplitude, beta, restitution, effects=effects)
+    window, found = Window(beta * OMEGA_N, 3, 2, 64), []
     for solver in (event_driven, radau):
         run = solver.solve(case, window, rtol=1e-9, time_limit=inf)
         found.append(response.evaluate(run, case, harmonics=3).numbers)
     assert found[0]["impacts"] > 0.0
     names = ("amplitude_ratio", "column_open_fraction", "bolster_open_fraction", "largest_impulse")
-    for name in (*names, "impacts", "impact_energy", "dissipated_energy"):
+    for name in (*names, "impacts", "impact_energy", "dissipated_energy", "supplied_energy"):
         assert found[1][name] == pytest.approx(found[0][name], rel=1e-6), name
     assert min(each["minimum_normal_force"] for each in found) > -1e-9
 
 
+ENERGIES = [
+    *((law, 4.75e-3, restitution, {}) for law in LAW_NAMES for restitution in (0.0, 0.5)),
+    *(("coulomb", 2e-3, 0.0, FIXTURE), ("static-dynamic", 2e-3, 0.0, GUIDE)),
+    ("exponential", 2e-3, 0.0, OTHERS),
+]
+
+
 @pytest.mark.few(2)
-@pytest.mark.parametrize("law", LAW_NAMES)
-@pytest.mark.parametrize("restitution", [0.0, 0.5])
-def test_friction_and_impacts_take_what_the_base_supplies(law, restitution):
-    settled = Settings(method="event-driven", rtol=1e-8, duration=None, settle_periods=150, kept_periods=2)
-    numbers = respond(record(law, 4.75e-3, 0.8, restitution), settled, 3)[0].numbers
+@pytest.mark.parametrize(("law", "amplitude", "restitution", "effects"), ENERGIES)
+def test_friction_impacts_and_dampers_take_what_the_base_supplies(law, amplitude, restitution, effects):
+    numbers = settled(record(law, amplitude, 0.8, restitution, effects=effects), rtol=1e-9)
     assert numbers["periodicity"] < 1e-6
-    assert numbers["impact_energy"] > 0.1 * numbers["dissipated_energy"]
+    assert numbers["impact_energy"] > (0.01 if effects else 0.1) * numbers["dissipated_energy"]
     taken = numbers["dissipated_energy"] + numbers["impact_energy"]
     assert taken == pytest.approx(numbers["supplied_energy"], rel=1e-5)
 
 
 def test_a_steady_response_with_impacts_is_that_of_a_long_run():
     case = record("coulomb", 1e-3, 2.5)
-    long = Settings(method="event-driven", rtol=1e-8, duration=None, settle_periods=200)
-    expected = respond(case, long, 3)[0].numbers
+    expected = settled(case, 200)
     from wedgesweep.sweep.cases import solve_cases
 
     found = Settings(method="event-driven", rtol=1e-8, duration=None, steady=True)

@@ -1,7 +1,5 @@
 """Wedges that lift off with a guide that rubs on the bolster, or with a side frame on a compliant table."""
 
-from math import inf
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -11,26 +9,12 @@ from scipy.integrate import solve_ivp
 from tests.physics import compiled_unilateral as mechanics
 from tests.physics.cases import OMEGA_N
 from tests.physics.compiled_mechanics import reactions
-from tests.physics.test_unilateral import AMPLITUDE, MARGIN, SPEED, vectors
-from wedgesweep import response
-from wedgesweep.friction import LAW_NAMES
-from wedgesweep.simulate import Settings, respond
-from wedgesweep.solvers import event_driven, radau
+from tests.physics.test_unilateral import FIXTURE, GUIDE, MARGIN, SPEED, record, settled, vectors
 from wedgesweep.solvers.period_map import memory, prepared, run_periods
-from wedgesweep.solvers.trajectory import Window
 from wedgesweep.systems import compact
 from wedgesweep.systems.suspension import parameters
 from wedgesweep.systems.suspension.newton import Coefficients, Loads
 from wedgesweep.systems.suspension.unilateral.contacts import Faces, Motion
-
-FIXTURE = {"fixture_resonance": {"frequency": 40.0, "damping_ratio": 0.05}}
-GUIDE = {"guide_friction": {"force": 1.5}}
-
-
-def record(effects, law="coulomb", amplitude=AMPLITUDE, beta=1.2, joints="unilateral", friction=None, **more):
-    suspension = {"joints": joints, "restitution": 0.0} | more
-    return parameters.record(law, amplitude, beta * OMEGA_N, suspension, friction or {}, effects)
-
 
 # A side frame that an impact moves
 
@@ -39,7 +23,7 @@ def record(effects, law="coulomb", amplitude=AMPLITUDE, beta=1.2, joints="unilat
 def impacts(draw):
     """A case, a state in which gaps close, the contacts that touch, and the restitution."""
     case = record(
-        FIXTURE,
+        effects=FIXTURE,
         friction={"dynamic": draw(st.floats(0.0, 0.3))},
         column_angle=draw(st.sampled_from((-0.07, 0.07, 0.3))),
         wedge_mass=draw(st.floats(0.02, 0.6)),
@@ -94,8 +78,8 @@ def test_impulses_move_wedge_bolster_and_side_frame_and_take_energy(given_impact
 def test_closed_contacts_under_load_are_those_of_bilateral_joints(effects):
     """With N > 0 the contact problem gives what the equations of bilateral joints give."""
     generator, found = np.random.default_rng(3), 0
-    bilateral = compact(record(effects, "static-dynamic", joints="bilateral"))[0]
-    case = record(effects, "static-dynamic")
+    bilateral = compact(record("static-dynamic", effects=effects, joints="bilateral"))[0]
+    case = record("static-dynamic", effects=effects)
     s, g = case[0]["suspension"], case[0]["geometry"]
     for _ in range(200):
         wedge, bolster, table = generator.uniform((-5.0, -20.0, -20.0), (20.0, 5.0, 20.0))
@@ -122,7 +106,7 @@ def test_closed_contacts_under_load_are_those_of_bilateral_joints(effects):
 @given(st.tuples(*[st.floats(-30.0, 30.0)] * 3), st.tuples(st.booleans(), st.booleans()), st.booleans())
 def test_a_guide_holds_the_bolster_or_rubs_with_its_whole_force(load, touches, on_table):
     """Motion and reactions fulfil the equations and inequalities of Coulomb's law on all three."""
-    case = record(GUIDE | (FIXTURE if on_table else {}))
+    case = record(effects=GUIDE | (FIXTURE if on_table else {}))
     s, (t_c, n_c, t_b, p_b) = case[0]["suspension"], vectors(case[0])
     free = Motion(load[0], load[1], load[2])
     mu = 0.32
@@ -177,7 +161,7 @@ def force_on_guide(free, on_bolster, on_frame, s, on_table):
 def test_a_guide_holds_the_bolster_until_the_base_shakes_it_loose_while_wedges_fly():
     """The bolster rests where its spring carries it; inertia exceeds the guide's force from 30 degrees on."""
     force, omega, samples = 0.5, 2.0 * OMEGA_N, 72
-    case = record({"guide_friction": {"force": force}}, wedge_spring=0.0)
+    case = record(effects={"guide_friction": {"force": force}}, wedge_spring=0.0)
     s, g = case[0]["suspension"], case[0]["geometry"]
     mass, stiffness = s["bolster_mass"], s["bolster_spring"]
     case["input"]["omega"], case["input"]["amplitude"] = omega, 2.0 * force / (mass * omega**2)
@@ -199,49 +183,12 @@ def test_a_guide_holds_the_bolster_until_the_base_shakes_it_loose_while_wedges_f
 
 
 @pytest.mark.acceptance
-@pytest.mark.parametrize("law", LAW_NAMES)
-def test_both_solvers_agree(law):
-    case, found = record(FIXTURE | GUIDE, law, 2e-3, 1.3), []
-    window = Window(1.3 * OMEGA_N, 3, 2, 64)
-    for solver in (event_driven, radau):
-        run = solver.solve(case, window, rtol=1e-9, time_limit=inf)
-        found.append(response.evaluate(run, case, harmonics=3).numbers)
-    assert found[0]["impacts"] > 0.0
-    for name in ("amplitude_ratio", "column_open_fraction", "bolster_open_fraction", "largest_impulse"):
-        assert found[1][name] == pytest.approx(found[0][name], rel=1e-6), name
-    for name in ("impacts", "impact_energy", "dissipated_energy", "supplied_energy"):
-        assert found[1][name] == pytest.approx(found[0][name], rel=1e-6), name
-
-
-OTHERS = {
-    "viscous_damping": {"coefficient": 8.0},
-    "end_stop": {"clearance": 1e-3, "stiffness": 2e4},
-    "stribeck": {"velocity": 5e-3, "peak": 0.05},
-    "input_distortion": {"second": 0.1},
-}
-
-
-@pytest.mark.acceptance
-@pytest.mark.parametrize(
-    ("law", "effects"), [("coulomb", FIXTURE), ("static-dynamic", GUIDE), ("exponential", OTHERS)]
-)
-def test_friction_impacts_and_dampers_take_what_the_base_supplies(law, effects):
-    settled = Settings(method="event-driven", rtol=1e-9, duration=None, settle_periods=150, kept_periods=2)
-    numbers = respond(record(effects, law, 2e-3, 0.8), settled, 3)[0].numbers
-    assert numbers["periodicity"] < 1e-6
-    assert numbers["impact_energy"] > 0.01 * numbers["dissipated_energy"]
-    taken = numbers["dissipated_energy"] + numbers["impact_energy"]
-    assert taken == pytest.approx(numbers["supplied_energy"], rel=1e-5)
-
-
-@pytest.mark.acceptance
 @pytest.mark.parametrize("law", ["coulomb", "static-dynamic"])
 def test_a_heavy_side_frame_on_a_stiff_table_moves_as_the_base(law):
     """A light one does not, however stiff the table: an impact moves it before the table can hold it."""
-    settled = Settings(method="event-driven", rtol=1e-8, duration=None, settle_periods=20, kept_periods=2)
     stiff = {"fixture_resonance": {"frequency": 1e3, "damping_ratio": 0.7}}
-    rigid = respond(record({}, law, 2e-3, 1.3), settled, 3)[0].numbers
-    moving = respond(record(stiff, law, 2e-3, 1.3, side_frame_mass=1e4), settled, 3)[0].numbers
+    rigid = settled(record(law, 2e-3, 1.3), 20)
+    moving = settled(record(law, 2e-3, 1.3, effects=stiff, side_frame_mass=1e4), 20)
     assert rigid["impacts"] > 0.0
     for name in ("amplitude_ratio", "column_open_fraction", "bolster_open_fraction", "impact_energy"):
         assert moving[name] == pytest.approx(rigid[name], rel=2e-3), name
@@ -253,10 +200,9 @@ def test_a_heavy_side_frame_on_a_stiff_table_moves_as_the_base(law):
     [("coulomb", FIXTURE), ("static-dynamic", {"guide_friction": {"force": 0.3}})],
 )
 def test_nothing_changes_where_nothing_lifts_off(law, effects):
-    steady = Settings(method="event-driven", rtol=1e-11, duration=None, settle_periods=20, kept_periods=2)
     for beta, amplitude in ((0.4, 1e-3), (1.4, 1e-4)):
         held, opens = (
-            dict(respond(record(effects, law, amplitude, beta, joints=joints), steady, 9)[0].numbers)
+            dict(settled(record(law, amplitude, beta, effects=effects, joints=joints), 20, 1e-11, 9))
             for joints in parameters.JOINTS
         )
         assert held["lift_off_fraction"] == opens["impacts"] == 0.0

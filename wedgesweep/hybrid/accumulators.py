@@ -5,7 +5,6 @@ where a mode begins or ends and where displacement or velocity is extreme.
 """
 
 from math import inf
-from typing import NamedTuple
 
 import numpy as np
 
@@ -149,6 +148,12 @@ def add(sums, t, y, weight, mode, p):
     """Add one point of the kept window."""
     add_motion(sums, y, weight, mode, p)
     dissipated, supplied, first, second = powers(t, y, mode, p)
+    add_powers(sums, weight, dissipated, supplied, first, second, _pulls(first, second, p))
+
+
+@inlined
+def add_powers(sums, weight, dissipated, supplied, first, second, pulls):
+    """Add powers (W) and normal forces (N; NaN: not determined) at a point, and whether a contact pulls."""
     sums.dissipated += weight * dissipated
     sums.supplied += weight * supplied
     if first == first:  # NaN: not determined
@@ -156,48 +161,5 @@ def add(sums, t, y, weight, mode, p):
         sums.first_sum += weight * first
         sums.second_sum += weight * second
         sums.determined += weight
-        if _pulls(first, second, p):
+        if pulls:
             sums.lifted_time += weight
-
-
-class Span(NamedTuple):
-    """Integrals over some time (s) of a mode: displacement (m s), energies (J), normal forces (N s).
-
-    ``sticks`` and ``lifted``: whether the contact sticks, and whether a normal force is negative.
-    """
-
-    time: float
-    integral: float
-    sticks: bool
-    lifted: bool
-    dissipated: float
-    supplied: float
-    first: float
-    second: float
-
-
-@inner
-def add_span(sums, span):
-    """Add a span whose integrals are known; its extremes come from ``add_extremes``."""
-    _count_onset(sums, 1.0 if span.sticks else 0.0)
-    sums.time += span.time
-    sums.integral += span.integral
-    sums.dissipated += span.dissipated
-    sums.supplied += span.supplied
-    sums.first_sum += span.first
-    sums.second_sum += span.second
-    sums.determined += span.time
-    if span.sticks:
-        sums.stuck_time += span.time
-    if span.lifted:
-        sums.lifted_time += span.time
-
-
-@inlined
-def add_extremes(sums, x, velocity, normal, energies):
-    """Add a point that may be an extreme; ``normal``: forces (N) of both contacts."""
-    sums.lowest = min(sums.lowest, x)
-    sums.highest = max(sums.highest, x)
-    sums.peak_velocity = max(sums.peak_velocity, abs(velocity))
-    if energies:
-        _add_forces(sums, normal[0], normal[1])

@@ -120,23 +120,8 @@ def events(forces, t, y, mode, p, out):
 
 
 @required
-def event(place, t, y, mode, p, out):
-    """One event function, with ``out`` as working space."""
-
-
-@required
 def transition(t, y, mode, place, p):
     """State and mode after the event at a place of the event functions, and whether they are well-posed."""
-
-
-@required
-def well_posed(t, y, mode, p):
-    """Whether exactly one set of contact forces fits the state: else the system locks."""
-
-
-@required
-def never_locks(p):
-    """Whether it is proved that every state of the case is well-posed."""
 
 
 @required
@@ -170,16 +155,37 @@ def observed(y, p):
 
 
 @required
-def contact_forces(t, y, mode, p):
-    """Normal forces of both contacts (N); NaN while they are not determined."""
-
-
-@required
 def powers(t, y, mode, p):
     """Power that friction and damping take, power of the input (W), and the normal forces (N, or NaN)."""
 
 
 # What a system may leave out.
+
+
+@optional
+def event(place, t, y, mode, p, out):
+    """One event function, with ``out`` as working space."""
+    events(rate(t, y, mode, p)[1], t, y, mode, p, out)
+    return out[place]
+
+
+@optional
+def well_posed(t, y, mode, p):
+    """Whether exactly one set of contact forces fits the state: else the system locks."""
+    return True
+
+
+@optional
+def never_locks(p):
+    """Whether it is proved that every state of the case is well-posed."""
+    return True
+
+
+@optional
+def contact_forces(t, y, mode, p):
+    """Normal forces of both contacts (N); NaN while they are not determined."""
+    _, _, first, second = powers(t, y, mode, p)
+    return first, second
 
 
 @optional

@@ -212,8 +212,9 @@ class _Run:
         if reached and result.t[-1] == t:
             self._shorten_first_step(t)
             return t, y, -1
-        self._require(not system.locked(result.t, result.y, mode, self.case), result.t[-1])
-        if system.missed_event(result.t, result.y, mode, self.case):
+        fault = system.check(result.t, result.y, mode, self.case)
+        self._require(fault != system.LOCKED, result.t[-1])
+        if fault == system.MISSED:
             message = f"a switch was missed between t = {t:.6g} s and {result.t[-1]:.6g} s"
             raise CaseError(message, "solver_failure")
         if result.t.size > 2:

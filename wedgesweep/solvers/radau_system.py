@@ -17,7 +17,9 @@ from wedgesweep.solvers.integrate import MOST_EVENTS
 PERTURBATION = 1e-7
 # Questions.
 RATE, JACOBIAN, EVENTS = range(3)
-ADD, SAMPLE, LOCKED, MISSED = range(4)
+ADD, SAMPLE, CHECK = range(3)
+# Answers to CHECK.
+FINE, LOCKED, MISSED = range(3)
 
 
 @compiled
@@ -157,24 +159,23 @@ def _lowest_event(t, y, mode, p, out):
 
 @compiled
 def _along(question, points, mode, case, sums, out):
-    """Answer a question about many states into ``sums`` or ``out``; the index of the first state of a kind.
+    """Answer a question about many states into ``sums`` or ``out``, or as a number.
 
     ``points`` (n + 2, k): times, weights, states.
     """
     p, width = case[0], interface.scales(case[0])
-    room = np.empty(MOST_EVENTS)
+    room, found, last = np.empty(MOST_EVENTS), FINE, points.shape[1] - 1
     for i in range(points.shape[1]):
         t, y = points[0, i], vector(points[2:, i], width)
         if question == ADD:
             accumulators.add(sums[0], t, y, points[1, i], mode, p)
         elif question == SAMPLE:
             _sample(i, t, y, mode, p, out)
-        elif question == LOCKED:
-            if not interface.well_posed(t, y, mode, p):
-                return i
-        elif _lowest_event(t, y, mode, p, room) < 0.0:
-            return i
-    return -1
+        elif not interface.well_posed(t, y, mode, p):
+            return LOCKED
+        elif 0 < i < last and _lowest_event(t, y, mode, p, room) < 0.0:
+            found = MISSED
+    return found
 
 
 def _points(t: np.ndarray, y: np.ndarray, weight: np.ndarray | None = None) -> np.ndarray:
@@ -201,12 +202,9 @@ def sample(t: np.ndarray, y: np.ndarray, mode: Any, case: np.ndarray) -> np.ndar
     return out
 
 
-def locked(t: np.ndarray, y: np.ndarray, mode: Any, case: np.ndarray) -> bool:
-    """Whether one of the states, shape (n, k), is not well-posed."""
-    return bool(_along(LOCKED, _points(t, y), mode, case, _NO_SUMS, _NO_SAMPLES) >= 0)
+def check(t: np.ndarray, y: np.ndarray, mode: Any, case: np.ndarray) -> int:
+    """LOCKED if one of the states, shape (n, k), is not well-posed.
 
-
-def missed_event(t: np.ndarray, y: np.ndarray, mode: Any, case: np.ndarray) -> bool:
-    """Whether an event function is negative at any of the states, shape (n, k), but the ends."""
-    points = _points(t, y)[:, 1:-1].copy()
-    return bool(_along(MISSED, points, mode, case, _NO_SUMS, _NO_SAMPLES) >= 0)
+    Else MISSED if an event function is negative at any of them but the ends.
+    """
+    return int(_along(CHECK, _points(t, y), mode, case, _NO_SUMS, _NO_SAMPLES))

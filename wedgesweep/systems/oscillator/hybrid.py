@@ -61,20 +61,6 @@ def fastest(p):
     return max(excitation.fastest(p), (p.oscillator.spring / p.oscillator.mass) ** 0.5)
 
 
-@implement(interface.well_posed, OSCILLATOR)
-@inlined
-def well_posed(t, y, mode, p):
-    """The normal force does not depend on friction: there always is exactly one motion."""
-    return True
-
-
-@implement(interface.never_locks, OSCILLATOR)
-@inlined
-def never_locks(p):
-    """So it need not be checked."""
-    return True
-
-
 @implement(interface.holds, OSCILLATOR)
 @inlined
 def holds(mode, p):
@@ -105,13 +91,6 @@ def sticks(y, mode, p):
     if creeps(p):
         return abs(slip(y, p)) <= p.friction.v_t
     return abs(mode.column) != 1 and not crosses(mode)
-
-
-@implement(interface.contact_forces, OSCILLATOR)
-@inlined
-def contact_forces(t, y, mode, p):
-    """The normal force is given, and there is no second one."""
-    return nan, nan
 
 
 @implement(interface.powers, OSCILLATOR)
@@ -216,14 +195,6 @@ def events(now, t, y, mode, p, out):
         out[i] = inf
     _slip_events(now, y, mode, p, out)
     _effect_events(t, y, mode, p, out)
-
-
-@implement(interface.event, OSCILLATOR)
-@inner
-def event(place, t, y, mode, p, out):
-    """One of them."""
-    events(load(t, y, mode, p), t, y, mode, p, out)
-    return out[place]
 
 
 # Modes

@@ -26,8 +26,8 @@ from wedgesweep.systems.suspension.newton import UNDETERMINED, forces
 from wedgesweep.systems.suspension.set_valued import acceleration_on_breakaway
 
 # Places of the event functions other than those of the axes: both normal forces, two ends of the segment of
-# travel, time at rest. The base model has those up to the normal forces.
-COLUMN_NORMAL, BOLSTER_NORMAL, BASE_EVENTS = 6, 7, 8
+# travel, time at rest.
+COLUMN_NORMAL, BOLSTER_NORMAL = 6, 7
 TRAVEL, CLOCK = 2 * AXES, 2 * AXES + 2
 EVENTS = CLOCK + 1
 

@@ -2,37 +2,51 @@
 
 from wedgesweep.compiled import inlined, inner
 from wedgesweep.hybrid import interface
-from wedgesweep.hybrid.interface import implement
-from wedgesweep.hybrid.recorder import record_constant
+from wedgesweep.hybrid.interface import implement, leaves, transition
 from wedgesweep.hybrid.state import NO_EVENT, State
-from wedgesweep.systems.suspension.breakaway import breakaway_between, breakaway_range
+from wedgesweep.systems.suspension.events import COLUMN_NORMAL
+from wedgesweep.systems.suspension.linear_events import follow_linear
+from wedgesweep.systems.suspension.linear_slip import constant_friction, linear_oscillator
 from wedgesweep.systems.suspension.modes import stuck
-from wedgesweep.systems.suspension.regularised_slip import follow_linear, follow_regularised
-from wedgesweep.systems.suspension.stick_slip import stick_slip
+from wedgesweep.systems.suspension.regularised_slip import equations_of, follow_series, has_series
+from wedgesweep.systems.suspension.sticking import follow_stuck
+
+# Modes after which the integrator checks the number of events.
+MOST_MODES = 1000
 
 
 @inlined
-def _faces_closed(mode):
-    return mode.column_sign > 0 and mode.bolster_sign > 0
+def _follow_mode(state, stop, equations, p, keeping, recorder, work):
+    """As ``follow``, one mode."""
+    mode = state.mode
+    if stuck(mode, p):
+        return follow_stuck(state, stop, p, keeping, recorder)
+    if constant_friction(mode, p):
+        oscillator = linear_oscillator(state.y, mode, p)
+        if oscillator.linear:
+            state, event = follow_linear(state, stop, oscillator, p, keeping, recorder)
+            return True, state, event
+    if has_series(mode, p):
+        return follow_series(state, stop, equations, p, keeping, recorder, work)
+    return False, state, NO_EVENT
 
 
 @implement(interface.follow, "base")
 @inner
 def follow(state, stop, p, keeping, recorder, work):
     """See the interface."""
-    if not p.friction.set_valued:
-        return follow_regularised(state, stop, p, keeping, recorder, work)
-    if p.geometry.always_well_posed and _faces_closed(state.mode):
-        done, state, event = stick_slip(state, stop, p, keeping, recorder, work.counts)
-        if done:
+    if not p.geometry.always_well_posed:
+        return False, state, NO_EVENT
+    equations = equations_of(state.mode, p)
+    for _ in range(MOST_MODES):
+        done, state, event = _follow_mode(state, stop, equations, p, keeping, recorder, work)
+        if not done or event < 0 or event >= COLUMN_NORMAL:
+            return done, state, event
+        y, mode, certain = transition(state.t, state.y, state.mode, event, p)
+        if not certain:
             return True, state, event
-    if not stuck(state.mode, p):
-        return follow_linear(state, stop, p, keeping, recorder)
-    forward, backward, loaded = breakaway_range(state.y, state.mode.segment, p)
-    if not loaded:
-        # Joints that can open: ``leaves`` hands over to the other system. Others are integrated step by step.
-        return p.geometry.opens != 0, state, NO_EVENT
-    end, event = breakaway_between(forward, backward, state.t, stop, p)
-    if keeping:
-        record_constant(state.t, end, state.y, state.mode, recorder, p)
-    return True, State(end, state.y, state.mode, state.last_event, state.step), event
+        work.counts[2] += 1
+        state = State(state.t, y, mode, event, state.step)
+        if leaves(y, mode, p):
+            break
+    return True, state, NO_EVENT

@@ -12,14 +12,14 @@ from wedgesweep.systems.shared import implement_shared
 from wedgesweep.systems.suspension import (  # noqa: F401
     events,
     follow,
-    sampled_breakaway,
+    sticking,
     stiffness,
     transitions,
     while_closed,
 )
 from wedgesweep.systems.suspension.energy import damping_power, friction_power, supplied_power
 from wedgesweep.systems.suspension.faces import column_slip
-from wedgesweep.systems.suspension.filippov import filippov_forces, forces_of_mode
+from wedgesweep.systems.suspension.filippov import filippov_forces
 from wedgesweep.systems.suspension.modes import VELOCITY, X, held, stuck
 from wedgesweep.systems.suspension.newton import driving_force, forces
 
@@ -46,13 +46,6 @@ implement_shared(SUSPENSION)
 def base_rate(t, y, mode, p):
     """As ``transitions.rate``, in one copy for all stages of a step: the base model takes few such steps."""
     return transitions.rate(t, y, mode, p)
-
-
-@implement(interface.event_count, "base")
-@inlined
-def base_event_count(p):
-    """Number of event functions of the base model."""
-    return events.BASE_EVENTS
 
 
 @implement(interface.event_count, SUSPENSION)
@@ -111,7 +104,7 @@ def forces_and_power(t, y, mode, p):
 
 
 @implement(interface.powers, SUSPENSION)
-@inlined
+@inner
 def powers(t, y, mode, p):
     """Power taken and supplied, and the normal forces."""
     column, bolster, power = nan, nan, 0.0
@@ -119,13 +112,3 @@ def powers(t, y, mode, p):
         column, bolster, power = forces_and_power(t, y, mode, p)
     supplied = supplied_power(excitation.acceleration(t, p), y, p)
     return power + damping_power(y, p), supplied, column, bolster
-
-
-@implement(interface.contact_forces, SUSPENSION)
-@inner
-def normal_forces(t, y, mode, p):
-    """Normal forces on column and bolster face; they are not determined while set-valued friction holds."""
-    if stuck(mode, p):
-        return nan, nan
-    now = forces_of_mode(t, y, mode, p)
-    return now.column, now.bolster

@@ -10,11 +10,11 @@ from math import inf, sqrt
 from typing import NamedTuple
 
 from wedgesweep import friction
-from wedgesweep.compiled import inlined, inner
+from wedgesweep.compiled import inlined
 from wedgesweep.effects import guide_friction
 from wedgesweep.hybrid.search import Sample
 from wedgesweep.systems.suspension.faces import coefficients
-from wedgesweep.systems.suspension.modes import BOLSTER, COLUMN, GUIDE
+from wedgesweep.systems.suspension.modes import BOLSTER, COLUMN, GUIDE, VELOCITY, X
 from wedgesweep.systems.suspension.newton import (
     UNIT_BASE,
     Coefficients,
@@ -43,13 +43,16 @@ class LinearOscillator(NamedTuple):
     frequency: float  # Omega, rad/s
     centre: float  # m
     forced: float  # m
-    driven: float  # cu
     column: NormalForce
     bolster: NormalForce
     column_mu: float  # signed, for T = mu N: with the sign of the normal force
     bolster_mu: float
     threshold: float  # |z'| at which the mode ends, m/s
     event: int  # number of that event function
+
+
+# What is followed of a motion: z' and the normal forces on column and bolster face.
+SLIP, COLUMN_FORCE, BOLSTER_FORCE = range(3)
 
 
 @inlined
@@ -76,12 +79,9 @@ def constant_friction(mode, p):
     return friction.exponent(p) == 0.0 and abs(mode.column) == 1 and bolster and guide
 
 
-@inner
+@inlined
 def linear_oscillator(y, mode, p):
-    """Closed form of a mode; ``linear`` is False if friction is not constant, or near resonance."""
-    if not (p.geometry.always_well_posed and constant_friction(mode, p)):
-        none = NormalForce(0.0, 0.0, 0.0)
-        return LinearOscillator(False, inf, 0.0, 0.0, 0.0, none, none, 0.0, 0.0, 0.0, -1)
+    """Closed form of a mode of constant friction; ``linear`` is False near resonance."""
     omega = p.input.omega
     column_mu, bolster_mu = coefficients(0.0, y, mode, p)
     mu = Coefficients(mode.column_sign * column_mu, mode.bolster_sign * bolster_mu, 0.0, 0.0)
@@ -97,7 +97,6 @@ def linear_oscillator(y, mode, p):
         sqrt(square),
         at_rest.acceleration / square,
         driven.acceleration * p.input.amplitude * omega**2 / (omega**2 - square),
-        driven.acceleration,
         NormalForce(at_rest.column, by_x.column, driven.column),
         NormalForce(at_rest.bolster, by_x.bolster, driven.bolster),
         mu.column,
@@ -117,24 +116,12 @@ class Phase(NamedTuple):
 
 
 @inlined
-def input_turn(t, p):
-    """Cosine and sine of the phase of the input."""
-    return cosine(p.input.omega * t), sine(p.input.omega * t)
-
-
-@inlined
-def phase_of(turn, x, velocity, oscillator, p):
-    """Phase of a state; ``turn``: ``input_turn`` at its time."""
-    c, s = turn
-    free = x - oscillator.centre - oscillator.forced * s
-    quadrature = (velocity - oscillator.forced * p.input.omega * c) / oscillator.frequency
-    return Phase(c, s, free, quadrature)
-
-
-@inlined
-def phase_at(t, x, velocity, oscillator, p):
+def phase_at(t, y, oscillator, p):
     """Phase of a state at time t."""
-    return phase_of(input_turn(t, p), x, velocity, oscillator, p)
+    c, s = cosine(p.input.omega * t), sine(p.input.omega * t)
+    free = y[X] - oscillator.centre - oscillator.forced * s
+    quadrature = (y[VELOCITY] - oscillator.forced * p.input.omega * c) / oscillator.frequency
+    return Phase(c, s, free, quadrature)
 
 
 @inlined
@@ -149,30 +136,17 @@ def rotated(phase, input_cos, input_sin, free_cos, free_sin):
 
 
 @inlined
-def angles(time, oscillator, p):
-    """Cosines and sines of the angles by which input and free vibration turn in some time (s)."""
-    a, b = p.input.omega * time, oscillator.frequency * time
-    return cosine(a), sine(a), cosine(b), sine(b)
-
-
-@inner
-def advanced(phase, time, oscillator, p):
-    """Phase some time (s) later."""
-    return rotated(phase, *angles(time, oscillator, p))
-
-
-@inlined
-def small_angles(time, oscillator, p):
-    """As ``angles``, for at most an interval of the scan."""
+def turns(time, oscillator, p):
+    """Cosines and sines of the angles by which input and free vibration turn in a short time (s)."""
     input_cos, input_sin = small_turn(p.input.omega * time)
     free_cos, free_sin = small_turn(oscillator.frequency * time)
     return input_cos, input_sin, free_cos, free_sin
 
 
 @inlined
-def advanced_briefly(phase, time, oscillator, p):
-    """As ``advanced``, for at most an interval of the scan."""
-    return rotated(phase, *small_angles(time, oscillator, p))
+def advanced(phase, time, oscillator, p):
+    """Phase some time (s) later, at most an interval of the scan."""
+    return rotated(phase, *turns(time, oscillator, p))
 
 
 @inlined
@@ -183,20 +157,20 @@ def motion(phase, oscillator, p):
 
 
 @inlined
-def acceleration(phase, oscillator, p):
+def _acceleration(phase, oscillator, p):
     """Relative acceleration x'' (m/s^2)."""
     return -oscillator.forced * p.input.omega**2 * phase.sine - oscillator.frequency**2 * phase.free
 
 
 @inlined
-def jerk(phase, oscillator, p):
-    """Rate x''' of the ``acceleration`` (m/s^3)."""
+def _jerk(phase, oscillator, p):
+    """Its rate x''' (m/s^3)."""
     return -oscillator.forced * p.input.omega**3 * phase.cosine - oscillator.frequency**3 * phase.quadrature
 
 
 @inlined
 def snap(phase, oscillator, p):
-    """Rate x'''' of the ``jerk`` (m/s^4)."""
+    """The rate x'''' (m/s^4) of the jerk."""
     return oscillator.forced * p.input.omega**4 * phase.sine + oscillator.frequency**4 * phase.free
 
 
@@ -207,36 +181,34 @@ def base_acceleration(phase, p):
 
 
 @inlined
-def acceleration_at(x, u2, oscillator):
-    """Acceleration z'' (m/s^2) at a displacement x (m) and a base acceleration u2 (m/s^2)."""
-    return oscillator.driven * u2 - oscillator.frequency**2 * (x - oscillator.centre)
-
-
-@inlined
 def force_at(force, x, u2):
-    """A normal force (N), likewise."""
+    """A normal force (N) at a displacement x (m) and a base acceleration u2 (m/s^2)."""
     return force.at_rest + force.by_x * x + force.by_u * u2
 
 
 @inlined
-def smaller_force_at(x, u2, oscillator):
-    """The smaller one of both normal forces (N), likewise."""
-    return min(force_at(oscillator.column, x, u2), force_at(oscillator.bolster, x, u2))
+def _force(which, oscillator):
+    return oscillator.column if which == COLUMN_FORCE else oscillator.bolster
 
 
 @inlined
-def force_sample(force, phase, oscillator, p):
-    """A normal force (N) and its rate."""
-    x = motion(phase, oscillator, p)[0]
-    rate = force_rate(force, phase, oscillator, p).value
-    return Sample(force_at(force, x, base_acceleration(phase, p)), rate)
+def value_of(which, phase, oscillator, p):
+    """The velocity (m/s) or a normal force (N), and its rate."""
+    x, velocity = motion(phase, oscillator, p)
+    if which == SLIP:
+        return Sample(velocity, _acceleration(phase, oscillator, p))
+    force = force_at(_force(which, oscillator), x, base_acceleration(phase, p))
+    return Sample(force, rate_of(which, phase, oscillator, p).value)
 
 
 @inlined
-def force_rate(force, phase, oscillator, p):
-    """Rate of a normal force (N/s) and its slope."""
-    base, omega = p.input.amplitude, p.input.omega
-    velocity, x2 = motion(phase, oscillator, p)[1], acceleration(phase, oscillator, p)
+def rate_of(which, phase, oscillator, p):
+    """The rate of the velocity or of a normal force, and the slope of that rate."""
+    x2 = _acceleration(phase, oscillator, p)
+    if which == SLIP:
+        return Sample(x2, _jerk(phase, oscillator, p))
+    force, base, omega = _force(which, oscillator), p.input.amplitude, p.input.omega
+    velocity = motion(phase, oscillator, p)[1]
     return Sample(
         force.by_x * velocity - force.by_u * base * omega**3 * phase.cosine,
         force.by_x * x2 + force.by_u * base * omega**4 * phase.sine,

@@ -1,8 +1,7 @@
-"""Follows the modes of a regularised law in the base model, one after the other.
+"""Follows a mode of a regularised law in the base model where friction depends on velocity.
 
-Slip under constant friction is a linear oscillator. Where friction depends on velocity, on the ramp or beyond
-it, power series (power_series.py) make the steps. They go on beyond the end of a branch of friction, so that
-no step has to be repeated there.
+On the ramp and beyond it power series (power_series.py) make the steps. They go on beyond the end of a branch
+of friction, so that no step has to be repeated there.
 """
 
 from math import inf, isfinite, pi, sqrt
@@ -10,23 +9,17 @@ from math import inf, isfinite, pi, sqrt
 from wedgesweep import excitation, friction
 from wedgesweep.compiled import inlined, inner
 from wedgesweep.effects import guide_friction
-from wedgesweep.hybrid.interface import error_scales, leaves, transition
+from wedgesweep.hybrid.interface import error_scales
 from wedgesweep.hybrid.polynomials import largest_change, polynomial
 from wedgesweep.hybrid.recorded_step import record_step
 from wedgesweep.hybrid.state import FAILED, NO_EVENT, State
 from wedgesweep.hybrid.step import ABSOLUTE, SHORTEST, SeriesStep, step_limit
-from wedgesweep.systems.suspension import linear_slip, newton
-from wedgesweep.systems.suspension.events import COLUMN_NORMAL
-from wedgesweep.systems.suspension.first_event import slip_to_event
-from wedgesweep.systems.suspension.linear_slip import constant_friction, linear_oscillator, phase_at
-from wedgesweep.systems.suspension.linear_slip_sums import record_slip
+from wedgesweep.systems.suspension import newton
 from wedgesweep.systems.suspension.modes import HELD
 from wedgesweep.systems.suspension.newton import UNIT_BASE, closed_contacts, loads, loads_per_displacement
 from wedgesweep.systems.suspension.power_series import ORDER, Equations, Face, Motion, expand, expand_powers
 from wedgesweep.systems.suspension.series_events import ends_of, first_event
 
-# Modes after which the integrator checks the number of events.
-MOST_MODES = 1000
 # Least number of steps per period of the input; and while they are recorded, so that each has one extreme.
 LEAST_STEPS, LEAST_STEPS_RECORDED = 6, 12
 # The last term of a series, and a share of the one before it, limit a step, which is shorter by a factor.
@@ -138,7 +131,7 @@ def _may_unload(t, h, series, loaded, mode, p):
 
 
 @inlined
-def _follow_series(state, stop, equations, p, keeping, recorder, work):
+def follow_series(state, stop, equations, p, keeping, recorder, work):
     """Follow a mode as long as both faces surely carry load.
 
     Returns whether this led to its event or ``stop``, the state reached, and the event, NO_EVENT or FAILED.
@@ -169,49 +162,16 @@ def _follow_series(state, stop, equations, p, keeping, recorder, work):
     return True, State(stop, y, mode, last_event, h), NO_EVENT
 
 
-@inner
-def follow_linear(state, stop, p, keeping, recorder):
-    """Follow slip under constant friction: whether it is linear, the state reached, the event or NO_EVENT."""
-    oscillator = linear_oscillator(state.y, state.mode, p)
-    if not oscillator.linear:
-        return False, state, NO_EVENT
-    phase = phase_at(state.t, state.y[0], state.y[1], oscillator, p)
-    end = slip_to_event(state, phase, stop, oscillator, p)
-    if keeping:
-        record_slip(state, phase, end.t, oscillator, recorder, p)
-    y = linear_slip.motion(end.phase, oscillator, p)
-    return True, State(end.t, y, state.mode, state.last_event, state.step), end.event
-
-
 @inlined
-def _has_series(mode, p):
+def has_series(mode, p):
     """Whether power series follow a mode: friction of the faces is linear in z', or a power of it."""
-    if abs(mode.column) == HELD or abs(mode.bolster) == HELD or guide_friction.acts(p):
+    if (
+        p.friction.set_valued
+        or abs(mode.column) == HELD
+        or abs(mode.bolster) == HELD
+        or guide_friction.acts(p)
+    ):
         return False
     if mode.column_sign < 0 or mode.bolster_sign < 0:
         return False
     return (mode.column == 0 and mode.bolster == 0) or isfinite(friction.exponent(p))
-
-
-@inner
-def follow_regularised(state, stop, p, keeping, recorder, work):
-    """Follow modes to an event that the integrator has to see, or to ``stop``; see the interface."""
-    if not p.geometry.always_well_posed:
-        return False, state, NO_EVENT
-    equations = equations_of(state.mode, p)
-    for _ in range(MOST_MODES):
-        done, event = False, NO_EVENT
-        if constant_friction(state.mode, p):
-            done, state, event = follow_linear(state, stop, p, keeping, recorder)
-        if not done and _has_series(state.mode, p):
-            done, state, event = _follow_series(state, stop, equations, p, keeping, recorder, work)
-        if not done or event < 0 or event >= COLUMN_NORMAL:
-            return done, state, event
-        y, mode, certain = transition(state.t, state.y, state.mode, event, p)
-        if not certain:
-            return True, state, event
-        work.counts[2] += 1
-        state = State(state.t, y, mode, event, state.step)
-        if leaves(y, mode, p):
-            break
-    return True, state, NO_EVENT

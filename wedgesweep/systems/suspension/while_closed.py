@@ -9,9 +9,9 @@ from wedgesweep.compiled import inlined, inner
 from wedgesweep.hybrid import interface
 from wedgesweep.hybrid.interface import implement
 from wedgesweep.systems.suspension import transitions
-from wedgesweep.systems.suspension.breakaway import carries_load_until_breakaway
 from wedgesweep.systems.suspension.faces import coefficients
 from wedgesweep.systems.suspension.modes import VELOCITY, held, mode_of, stuck, with_signs
+from wedgesweep.systems.suspension.sticking import carries_load_until_breakaway
 from wedgesweep.systems.suspension.unilateral.contacts import minors
 
 MARK = "while_closed"

@@ -401,35 +401,21 @@ def driving_force(t, acceleration, y, mode, p):
     return newton.driving_force(t, acceleration, y, mode, p)
 
 
-@inner
-def _forces_and_power(t, y, mode, p):
-    """Normal forces on column and bolster face (N), and the power (W) of friction."""
-    if stuck(mode, p):
-        return nan, nan, 0.0
-    if closed(mode):
-        return forces_and_power(t, y, mode, p)
-    _, reactions, _ = _motion_and_reactions(t, y, mode, p)
-    motion = velocities(y, p)
-    power = reactions.column_friction * motion.along + reactions.bolster_friction * bolster_slip(motion, p)
-    of_guide = guide_friction.force(y[VELOCITY], mode.guide, p) * y[VELOCITY]
-    return reactions.column, reactions.bolster, 2.0 * power - of_guide
-
-
 @implement(interface.powers, UNILATERAL)
 @inner
 def powers(t, y, mode, p):
-    """Power taken and supplied, and the normal forces."""
-    column, bolster, power = _forces_and_power(t, y, mode, p)
+    """Power taken and supplied, and the normal forces; not determined while set-valued friction holds."""
+    column, bolster, power = nan, nan, 0.0
+    if not closed(mode):
+        _, now, _ = _motion_and_reactions(t, y, mode, p)
+        motion = velocities(y, p)
+        faces = now.column_friction * motion.along + now.bolster_friction * bolster_slip(motion, p)
+        of_guide = guide_friction.force(y[VELOCITY], mode.guide, p) * y[VELOCITY]
+        column, bolster, power = now.column, now.bolster, 2.0 * faces - of_guide
+    elif not stuck(mode, p):
+        column, bolster, power = forces_and_power(t, y, mode, p)
     supplied = -excitation.acceleration(t, p) * momentum_against_table(y, p)
     return power + energy.damping_power(y, p), supplied, column, bolster
-
-
-@implement(interface.contact_forces, UNILATERAL)
-@inner
-def normal_forces(t, y, mode, p):
-    """Normal forces on column and bolster face; not determined while set-valued friction holds."""
-    column, bolster, _ = _forces_and_power(t, y, mode, p)
-    return column, bolster
 
 
 @implement(interface.follow, UNILATERAL)

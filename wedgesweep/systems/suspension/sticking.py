@@ -1,0 +1,109 @@
+"""Sticking without integration: set-valued friction holds the bolster until the base has accelerated enough.
+
+While only the base moves, the bolster rests between two base accelerations. As long as both normal forces
+stay positive these are known, and so are the times at which a harmonic or a sampled base motion reaches them.
+"""
+
+from math import asin, ceil, inf, pi
+
+from wedgesweep import sampled_input
+from wedgesweep.compiled import inlined, inner, term
+from wedgesweep.effects import fixture_resonance, states, stray_vibration
+from wedgesweep.hybrid.interface import follow, implement
+from wedgesweep.hybrid.recorder import record_constant
+from wedgesweep.hybrid.state import NO_EVENT, State
+from wedgesweep.systems.suspension.modes import COLUMN, VELOCITY, stuck
+from wedgesweep.systems.suspension.set_valued import breakaway_input
+from wedgesweep.trigonometry import sine
+
+DOWN, UP = 2 * COLUMN, 2 * COLUMN + 1
+
+
+@inner
+def _breakaway_range(y, segment, p):
+    """Base accelerations (m/s^2) below which a stuck bolster slips up, and above which it slips down.
+
+    Also whether both faces carry load between them; else the bolster may leave in another way.
+    """
+    forward, backward = breakaway_input(y, 1, segment, p), breakaway_input(y, -1, segment, p)
+    return forward, backward, p.geometry.always_well_posed != 0 and forward < backward
+
+
+@inlined
+def carries_load_until_breakaway(y, segment, p):
+    """Whether both faces carry load until a stuck bolster breaks away, whatever its direction.
+
+    On a compliant table the side frame moves, and with it the load: nothing is known in advance.
+    """
+    if fixture_resonance.acts(p):
+        return False
+    return _breakaway_range(y, segment, p)[2]
+
+
+@inner
+def _breakaway_of_sine(forward, backward, t, stop, p):
+    """Time at which the base acceleration leaves a range (m/s^2), and the event (NO_EVENT at ``stop``)."""
+    omega = p.input.omega
+    most = p.input.amplitude * omega**2
+    upper, lower = -forward / most, -backward / most  # of sin(omega t)
+    phase = omega * t
+    if sine(phase) > upper:
+        return t, UP
+    if sine(phase) < lower:
+        return t, DOWN
+    turn = 2.0 * pi
+    rising = falling = inf
+    if upper < 1.0:
+        rising = asin(upper)
+        rising += turn * ceil((phase - rising) / turn)
+    if lower > -1.0:
+        falling = pi - asin(lower)
+        falling += turn * ceil((phase - falling) / turn)
+    moment = min(rising, falling) / omega
+    if moment >= stop:
+        return stop, NO_EVENT
+    return moment, UP if rising < falling else DOWN
+
+
+@inlined
+def _held(state, end, event, keeping, recorder, p):
+    """What ``follow`` returns of a bolster that is held until ``end`` (s)."""
+    if keeping:
+        record_constant(state.t, end, state.y, state.mode, recorder, p)
+    return True, State(end, state.y, state.mode, state.last_event, state.step), event
+
+
+@inlined
+def follow_stuck(state, stop, p, keeping, recorder):
+    """As ``follow``, for a stuck bolster on a base that moves harmonically."""
+    forward, backward, loaded = _breakaway_range(state.y, state.mode.segment, p)
+    if not loaded:
+        return False, state, NO_EVENT
+    end, event = _breakaway_of_sine(forward, backward, state.t, stop, p)
+    return _held(state, end, event, keeping, recorder, p)
+
+
+@inner
+def _waits_for_input(state, p):
+    """Whether only a sampled motion of the base can end the mode."""
+    if p.series.rows == 0 or not stuck(state.mode, p) or stray_vibration.acts(p):
+        return False
+    moving, rests = states.active(p), True
+    for i in range(VELOCITY + 1, len(moving)):
+        rests = rests and not moving[i]
+    return rests
+
+
+@implement(follow, "suspension")
+@term("series", off="(False, state, NO_EVENT)", NO_EVENT=NO_EVENT)
+def follow_stuck_on_samples(state, stop, p, keeping, recorder, work):
+    """See the interface: follows a bolster that sticks under a sampled input."""
+    if not _waits_for_input(state, p):
+        return False, state, NO_EVENT
+    forward, backward, loaded = _breakaway_range(state.y, state.mode.segment, p)
+    if not loaded:
+        return False, state, NO_EVENT
+    size = p.input.amplitude
+    end, side = sampled_input.bend_leaves(state.t, stop, forward / size, backward / size, p)
+    event = NO_EVENT if side == 0 else UP if side < 0 else DOWN
+    return _held(state, end, event, keeping, recorder, p)
