@@ -165,8 +165,7 @@ def _shard(options: argparse.Namespace, base: Path, job: int) -> Iterator[tuple]
         code = process.wait()
         if number is None:
             if code:
-                message = f"a worker of this script ended with {code}"
-                raise SystemExit(message)
+                raise SystemExit(f"a worker of this script ended with {code}")
             return
         yield number, "unknown", [], HANG if code == -9 else TRACEBACK, f"the process ended with {code}"
         first = number + options.jobs

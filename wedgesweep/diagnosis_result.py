@@ -188,8 +188,9 @@ def read(directory: Path) -> DiagnosisResult:
     """
     for name in (JSON, DATASET):
         if not (directory / name).is_file():
-            message = f"{directory / name}: no such file; 'wedgesweep diagnose ... -o {directory}' makes it"
-            raise InputError([message])
+            raise InputError(
+                [f"{directory / name}: no such file; 'wedgesweep diagnose ... -o {directory}' makes it"]
+            )
     document = _document(directory / JSON)
     data = dataset.read(directory / DATASET)
     kind = document.get("kind", "steady")

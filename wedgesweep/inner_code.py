@@ -72,8 +72,7 @@ def _refuse_arrays(state: Any) -> None:
     ]
     for kind in (state.return_type, *made):
         if counted(kind).contains_nrt_meminfo():
-            message = f"{state.func_id.func_qualname}: arrays are for functions marked allocating"
-            raise TypeError(message)
+            raise TypeError(f"{state.func_id.func_qualname}: arrays are for functions marked allocating")
 
 
 @register_pass(mutates_CFG=True, analysis_only=False)

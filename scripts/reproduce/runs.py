@@ -111,8 +111,7 @@ def _place(coordinate: xr.DataArray, wanted: float) -> int:
     """Index of a value of a coordinate; KeyError if it is not there."""
     place = int(np.abs(coordinate.values - wanted).argmin())
     if abs(coordinate.values[place] - wanted) > SAME * wanted:
-        message = f"no {coordinate.name} = {wanted:g} in the dataset"
-        raise KeyError(message)
+        raise KeyError(f"no {coordinate.name} = {wanted:g} in the dataset")
     return place
 
 

@@ -51,8 +51,7 @@ def main(given: Sequence[str] | None = None) -> None:
         _store(finished, out)
         records = _run(wanted, out, options.jobs)
     if not records:
-        message = f"{out}: no finished sets"
-        raise SystemExit(message)
+        raise SystemExit(f"{out}: no finished sets")
     records.sort(key=lambda record: (KINDS.index(record["kind"]), record["index"]))
     sets = Sets([r for r in records if "failure" not in r], [r for r in records if "failure" in r])
     heading = f"Validation of wedgesweep {__version__}, seed {options.seed}, size {options.size:g}"
@@ -68,8 +67,7 @@ def _read(file: Path, seed: int) -> list[Record]:
     records = [json.loads(line) for line in file.read_text().splitlines()]
     for record in records:
         if record["seed"] != seed:
-            message = f"{file}: {record['name']} has the seed {record['seed']}, not {seed}"
-            raise SystemExit(message)
+            raise SystemExit(f"{file}: {record['name']} has the seed {record['seed']}, not {seed}")
     return records
 
 

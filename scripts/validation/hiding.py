@@ -171,5 +171,4 @@ def draw(one: DataSet) -> Draft:
         draft = draw_bench(one, random, attempt)
         if draft and HIDE[one.kind](one, draft, random, attempt):
             return draft
-    message = f"{one.name}: no system of this kind reaches the excess wanted in {ATTEMPTS} attempts"
-    raise RuntimeError(message)
+    raise RuntimeError(f"{one.name}: no system of this kind reaches the excess wanted in {ATTEMPTS} attempts")

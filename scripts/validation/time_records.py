@@ -86,8 +86,7 @@ def draw(one: DataSet) -> dict[str, Any]:
     for attempt in range(ATTEMPTS):
         if found := _drawn(one, attempt):
             return found
-    message = f"{one.name}: no rig shows its effect as is wanted in {ATTEMPTS} attempts"
-    raise RuntimeError(message)
+    raise RuntimeError(f"{one.name}: no rig shows its effect as is wanted in {ATTEMPTS} attempts")
 
 
 def _drawn(one: DataSet, attempt: int) -> dict[str, Any] | None:

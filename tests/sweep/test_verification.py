@@ -106,8 +106,7 @@ def test_a_motion_that_radau_itself_cannot_pin_down_is_not_judged(here, broken, 
 
 def test_a_judge_that_fails_is_told(here, monkeypatch):
     def fails(*arguments):
-        message = "gave up"
-        raise CaseError(message, "time_limit")
+        raise CaseError("gave up", "time_limit")
 
     run(SOLVERS["fixed"])
     monkeypatch.setattr(radau, "solve", fails)

@@ -189,8 +189,9 @@ def _require_own(directory: Path) -> None:
     mark, *others = _result_files()
     foreign = [name for name in others if (directory / name).exists()]
     if foreign and not any((directory / each).is_file() for each in (mark, REPLACING)):
-        message = f"{directory / foreign[0]}: not the result of a diagnosis; choose another -o to keep it"
-        raise Failure(message)
+        raise Failure(
+            f"{directory / foreign[0]}: not the result of a diagnosis; choose another -o to keep it"
+        )
 
 
 def _result_files() -> tuple[str, ...]:

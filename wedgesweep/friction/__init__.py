@@ -37,8 +37,9 @@ _compiled: list[str] = []
 def register(name: str, module: ModuleType) -> None:
     """Add a law that is not part of this package; RuntimeError once a case has been run without it."""
     if _compiled and LAWS.get(name) is not module:
-        message = f"friction law {name!r}: register laws before the first case of this process is run"
-        raise RuntimeError(message)
+        raise RuntimeError(
+            f"friction law {name!r}: register laws before the first case of this process is run"
+        )
     LAWS[name] = module
     kernels.register(module)
 
@@ -52,8 +53,9 @@ def require_known(codes: np.ndarray) -> None:
     """Raise ValueError for the code of a law that this process does not have: another law would run."""
     _compiled[:] = LAWS
     if (unknown := codes[codes >= len(LAWS)]).size:
-        message = f"friction law number {unknown[0]} is not registered in this process, which has {[*LAWS]}"
-        raise ValueError(message)
+        raise ValueError(
+            f"friction law number {unknown[0]} is not registered in this process, which has {[*LAWS]}"
+        )
 
 
 def _of_the_law(function: Callable) -> Callable:

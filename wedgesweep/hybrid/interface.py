@@ -34,8 +34,9 @@ def _declared(function: Function, default: Callable | None) -> Function:
                 return _IMPLEMENTED[function][field]
         if default:
             return default
-        message = f"no system with these records has {function.__name__}: {', '.join(fields)}"
-        raise NotImplementedError(message)
+        raise NotImplementedError(
+            f"no system with these records has {function.__name__}: {', '.join(fields)}"
+        )
 
     return by_record(function, choose)
 

@@ -200,8 +200,7 @@ def _refuse_stand_ins(name: str, values: np.ndarray) -> None:
         if count > 1 and others.size > count and abs(number - middle) > FAR * np.abs(others - middle).max():
             fault = f"{name}: {number:.12g} occurs {count} times, far from all other samples"
             mend = f'if it stands for a missing sample, write missing = ["{number:.12g}"]'
-            message = f"{fault}; {mend}"
-            raise ValueError(message)
+            raise ValueError(f"{fault}; {mend}")
 
 
 def _unit_faults(name: str, column: Channel, channel: Mapping[str, Any], remarks: list[str]) -> list[str]:

@@ -99,8 +99,9 @@ def decode(content: bytes, encoding: str | None) -> tuple[str, str]:
     try:
         text = content.decode(encoding)
     except LookupError as error:
-        message = f'no encoding "{encoding}"; valid here: utf-8, utf-16, latin-1 and the others of Python'
-        raise ValueError(message) from error
+        raise ValueError(
+            f'no encoding "{encoding}"; valid here: utf-8, utf-16, latin-1 and the others of Python'
+        ) from error
     except UnicodeDecodeError as error:
         message = f"not {encoding} text (byte {error.start}); state another measurement.csv.encoding"
         if stated is None and b"\0" in content:
@@ -301,6 +302,5 @@ def _decimal(rows: Sequence[Sequence[str]], columns: Sequence[int], stated: Mapp
     if all(map(IN_THOUSANDS.fullmatch, commas)) or any(
         "." in cell and DECIMAL.fullmatch(cell) for cell in cells
     ):
-        message = f'"{commas[0]}" may be a decimal or thousands; state measurement.csv.decimal'
-        raise ValueError(message)
+        raise ValueError(f'"{commas[0]}" may be a decimal or thousands; state measurement.csv.decimal')
     return ","

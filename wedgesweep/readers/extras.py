@@ -19,5 +19,4 @@ def module(name: str) -> Any:
     try:
         return importlib.import_module(name)
     except ImportError as error:
-        message = f"needs {name.partition('.')[0]}: pip install 'wedgesweep[{EXTRAS[name]}]'"
-        raise OSError(message) from error
+        raise OSError(f"needs {name.partition('.')[0]}: pip install 'wedgesweep[{EXTRAS[name]}]'") from error

@@ -170,8 +170,7 @@ def _picked(name: Name, variables: Mapping[str, Channel | None]) -> Channel:
             values = _column(np.asarray(values), column)
         return channel_of(values, stored.unit if stored else "", stored.clock if stored else None)
     except ValueError as error:
-        message = f"variable {show(name)} {error}"
-        raise ValueError(message) from error
+        raise ValueError(f"variable {show(name)} {error}") from error
 
 
 def matrix_of(values: np.ndarray) -> np.ndarray:

@@ -40,8 +40,7 @@ def solve(
     spaced phases only, and raises TypeError for a TimedWindow.
     """
     if isinstance(window, TimedWindow):
-        message = "sample times of one's own are for radau.solve; this solver samples even phases"
-        raise TypeError(message)
+        raise TypeError("sample times of one's own are for radau.solve; this solver samples even phases")
     case = prepared(compact(parameters))
     room = memory(
         rtol, window.samples_per_period, window.periods, acceleration=isinstance(window, TransientWindow)
@@ -54,8 +53,7 @@ def solve(
         outcome = run_periods(case, settle_periods, window.periods, y, True, room)
     if outcome != OK:
         status, message = MESSAGES[outcome]
-        message = f"{message} (at t = {room.reached[0]:.6g} s)"
-        raise CaseError(message, status)
+        raise CaseError(f"{message} (at t = {room.reached[0]:.6g} s)", status)
     samples = Samples(window.sample_times, room.x, room.velocity, room.sticks, room.normal, room.acceleration)
     counts = dict(zip(STATISTICS, room.work.counts.tolist(), strict=True))
     return Trajectory(samples, room.sums, window.periods, counts)

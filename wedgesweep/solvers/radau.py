@@ -215,8 +215,9 @@ class _Run:
         fault = system.check(result.t, result.y, mode, self.case)
         self._require(fault != system.LOCKED, result.t[-1])
         if fault == system.MISSED:
-            message = f"a switch was missed between t = {t:.6g} s and {result.t[-1]:.6g} s"
-            raise CaseError(message, "solver_failure")
+            raise CaseError(
+                f"a switch was missed between t = {t:.6g} s and {result.t[-1]:.6g} s", "solver_failure"
+            )
         if result.t.size > 2:
             self.first_step = result.t[-2] - result.t[-3]
         if t >= self.window.keep:
@@ -231,8 +232,7 @@ class _Run:
         """Begin the mode again with a shorter first step: the last one saw only the end of a short motion."""
         self.first_step = (self.first_step or self.period) / SHORTER
         if self.first_step < SHORTEST * self.period:
-            message = f"no progress at t = {t:.6g} s"
-            raise CaseError(message, "solver_failure")
+            raise CaseError(f"no progress at t = {t:.6g} s", "solver_failure")
 
     def _integrate(
         self, t: float, stop: float, y: np.ndarray, mode: Mode, places: list[int], at_rest: bool
@@ -258,8 +258,7 @@ class _Run:
 
         def limited_rate(t: float, y: np.ndarray) -> np.ndarray:
             if perf_counter() > deadline:
-                message = f"gave up after {self.time_limit:g} s at t = {t:.6g} s"
-                raise CaseError(message, "time_limit")
+                raise CaseError(f"gave up after {self.time_limit:g} s at t = {t:.6g} s", "time_limit")
             return system.rate(t, y, mode, case)
 
         return limited_rate
@@ -291,8 +290,9 @@ class _Run:
         self.statistics["switches"] += 1
         self.last_event = event
         if self.statistics["switches"] > EVENTS_PER_PERIOD * (1.0 + t / self.period):
-            message = f"more than {EVENTS_PER_PERIOD} switches per period at t = {t:.6g} s"
-            raise CaseError(message, "solver_failure")
+            raise CaseError(
+                f"more than {EVENTS_PER_PERIOD} switches per period at t = {t:.6g} s", "solver_failure"
+            )
         sums = self.sums if t >= self.window.keep else None
         y, mode, unique = system.transition(t, y, mode, event, self.case, sums)
         self._require(unique, t)
@@ -302,16 +302,13 @@ class _Run:
         self.statistics["rate_evaluations"] += result.nfev
         self.statistics["steps"] += result.t.size - 1
         if not np.isfinite(result.y).all():
-            message = f"state not finite at t = {result.t[-1]:.6g} s"
-            raise CaseError(message, "not_finite")
+            raise CaseError(f"state not finite at t = {result.t[-1]:.6g} s", "not_finite")
         if result.status < 0:
-            message = f"{result.message} (at t = {result.t[-1]:.6g} s)"
-            raise CaseError(message, "solver_failure")
+            raise CaseError(f"{result.message} (at t = {result.t[-1]:.6g} s)", "solver_failure")
 
     def _require(self, unique: bool, t: float) -> None:
         if not unique:
-            message = f"normal forces not unique at t = {t:.6g} s: the system locks"
-            raise CaseError(message, "locked")
+            raise CaseError(f"normal forces not unique at t = {t:.6g} s: the system locks", "locked")
 
     def _keep(self, result: Any, mode: Mode) -> None:
         half = 0.5 * np.diff(result.t)

@@ -110,10 +110,9 @@ def _load(record: np.ndarray, clock: Clock, settle_periods: int) -> np.ndarray:
     period = 2.0 * pi / float(record["input"]["omega"][0])
     _, _, force, _ = _sampled(record, period / LOAD_SAMPLES * np.arange(LOAD_SAMPLES), settle_periods, True)
     if np.isnan(force).any():
-        message = (
+        raise NoMotion(
             "friction holds the bolster at times, and no normal force is determined; raise the amplitude"
         )
-        raise NoMotion(message)
     passed = int(0.5 * period / clock.step)
     harmonics = np.fft.rfft(force)[: passed + 1] * (2.0 / LOAD_SAMPLES)
     phase = (

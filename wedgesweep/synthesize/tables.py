@@ -147,8 +147,7 @@ def loop(
     if np.isnan(force).any():
         share = f"{np.isnan(force).mean():.0%} of the motion"
         reason = f"no force drives the mass in {share}: a face lifts off there, or the wedge locks"
-        message = f"{reason}; lower the amplitude"
-        raise NoMotion(message)
+        raise NoMotion(f"{reason}; lower the amplitude")
     displacement, mean = (each.reshape(count, CELLS).mean(axis=1) for each in (motion[0], force))
     return displacement, mean
 

@@ -199,8 +199,7 @@ def _kit_of(p: np.void, acting: Sequence[str]) -> int:
     acting = [name for name in acting if name != lift_off.NAME]
     if has_unilateral_joints(p):
         if refused := set(acting) - set(known.with_lift_off()):
-            message = f"effects that unilateral joints do not go with: {', '.join(sorted(refused))}"
-            raise ValueError(message)
+            raise ValueError(f"effects that unilateral joints do not go with: {', '.join(sorted(refused))}")
         return JOINTS_OPEN_WITH_EFFECTS if acting else JOINTS_OPEN
     if not acting:
         return BASE
