@@ -192,7 +192,7 @@ def _shaken(
         omega, window = _frequencies(test), np.hanning(response.size)
         y, u = (np.fft.rfft((each - each.mean()) * window) for each in (response, test.input))
         used = (np.abs(y) ** 2 > LINES * np.max(np.abs(y) ** 2)) & (omega > 0.0)
-        rate = np.where(used, 1j * omega, inf)
+        rate = np.where(used, 1j * omega, 1.0)
         y, u = y / rate ** ORDER[name], u / rate ** ORDER[quantity]
         stretch, absolute = (y, y + u) if relative else (y - u, y)
         velocity = np.where(used, 1j * omega * stretch, 0.0)
