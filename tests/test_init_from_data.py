@@ -109,6 +109,15 @@ def test_the_load_of_two_faces_belongs_to_the_model_of_each_test(tmp_path):
     assert "no record shows it" in (tmp_path / "model.toml").read_text()
 
 
+def test_a_load_that_one_file_lacks_is_not_used(tmp_path):
+    t, d, f = loop()
+    loaded = text(tmp_path / "a.csv", t, d, f, 0.0 * t + 20.0, header="t,Stroke mm,Friction N,Load N")
+    found = begun(tmp_path, loaded, text(tmp_path / "b.csv", t, d, f, header="t,Stroke mm,Friction N"))
+    assert not any(test.model for test in found.tests)
+    assert found.model.oscillator["normal_force"] == 0.0
+    assert '"Load N"' in (tmp_path / "measured.toml").read_text()
+
+
 def test_a_damper_does_not_stand_for_the_friction_of_a_shaken_mass(tmp_path):
     files, t, spring, damping, friction = [], np.arange(4000) / 250.0, 1400.0, 2.3, 1.2
     for frequency in (3.0, 5.5, 8.0):

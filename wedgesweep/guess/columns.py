@@ -85,12 +85,12 @@ class Chosen:
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """Columns of a run: its time, its channels by name, what is left, and the load (N) of its faces."""
+    """Columns of a run: its time, its channels by name, what is left, and the load of its faces."""
 
     time: Chosen | None
     channels: Mapping[str, Chosen]
     left: tuple[Column, ...] = ()
-    load: float | None = None
+    load: Column | None = None
 
 
 def unit_of(column: Column, quantities: Sequence[str]) -> str:
@@ -161,9 +161,7 @@ def choose(columns: Sequence[Column]) -> Run:
         chosen["velocity"] = _derived(chosen, time)
     used = (time, load, *channels.values())
     left = tuple(column for column in columns if all(column is not each for each in used))
-    return Run(
-        None if time is None else _clock(time), chosen, left, None if load is None else _mean_load(load)
-    )
+    return Run(None if time is None else _clock(time), chosen, left, load)
 
 
 def _presses(column: Column) -> bool:
@@ -174,7 +172,7 @@ def _presses(column: Column) -> bool:
     return bool(is_force and named and values.size and values.std() < SET * values.mean())
 
 
-def _mean_load(column: Column) -> float:
+def mean_load(column: Column) -> float:
     """Mean (N) of a column of loads."""
     return float(_numbers(column).mean()) * UNITS[FORCE][unit_of(column, [FORCE])]
 

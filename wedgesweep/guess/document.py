@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from wedgesweep import rotation, toml
-from wedgesweep.guess.columns import INPUT, Chosen
+from wedgesweep.guess.columns import INPUT, Chosen, mean_load
 from wedgesweep.guess.model import NORMAL_FORCE, Numbers
 from wedgesweep.guess.tests import UNKNOWN_RATE, Guessed
 from wedgesweep.measured.declarations import ABSOLUTE, LOOP, RELATIVE, STEADY
@@ -136,7 +136,7 @@ def _test(test: Guessed, first: Guessed, path: Path) -> Iterator[str]:
     if test.part.end is not None:
         yield f"to_s = {test.part.end!r}"
     if test.run.load is not None:
-        load = float(f"{test.run.load:.4g}")
+        load = float(f"{mean_load(test.run.load):.4g}")
         yield f"model = {toml.inline({NORMAL_FORCE: load})}  # mean load of the record"
     if test.kind == STEADY and INPUT not in test.run.channels:
         yield f"{ASK}how large is the motion of the base (amplitude_mm or _rad) or the force (amplitude_N)?"

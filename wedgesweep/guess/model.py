@@ -8,6 +8,7 @@ from scipy.optimize import nnls
 
 from wedgesweep.diagnose.smoothing import LOWEST, LowPass, derivative, white_noise
 from wedgesweep.measured import Measurement, TestRecord
+from wedgesweep.measured.declarations import MOTIONS, RELATIVE
 from wedgesweep.measured.kinds import HIGHEST
 
 # Cut-offs over the frequency of the motion, noise of the acceleration over itself that is small enough, and
@@ -26,8 +27,6 @@ TAIL, PADDED = 0.1, 8
 # What a motion leaves as relative over what it leaves as absolute, below which it is relative. Random motion
 # has 0.17 if it is, and 4 if it is not; absolute motion at one frequency of a frame that rubs on a wall 0.7.
 CLEARLY = 0.5
-# Derivatives of displacement.
-ORDER = {"displacement": 0, "velocity": 1, "acceleration": 2}
 # Tests that are looked at.
 TESTS = 6
 # The number of a test's model that its load is.
@@ -151,7 +150,7 @@ def _low_pass(test: TestRecord) -> LowPass:
 def _integral(acceleration: np.ndarray, rate: float, order: int) -> np.ndarray:
     """An acceleration (n,), integrated at the frequencies at which it has power."""
     line = np.fft.rfft(acceleration - acceleration.mean())
-    omega = 2.0 * pi * np.fft.rfftfreq(acceleration.size, 1.0 / rate)
+    omega = _frequencies(acceleration, rate)
     power = np.abs(line) ** 2
     line[power < LINES * power.max()] = 0.0
     omega[0] = inf
@@ -161,7 +160,7 @@ def _integral(acceleration: np.ndarray, rate: float, order: int) -> np.ndarray:
 def _on_base(tests: tuple[TestRecord, ...], measurement: Measurement) -> Numbers:
     """Spring, damper and friction over the mass, by motions of mass and base."""
     name = next(iter(tests[0].responses))
-    relative = measurement.columns[name].get("of", "relative") == "relative"
+    relative = measurement.motion_of(name) == RELATIVE
     _, (spring, damping, friction) = _shaken(tests, name, relative, str(measurement.recorded_input))
     spring = spring or (2.0 * pi * float(np.median([_frequency(test) for test in tests]))) ** 2
     return Numbers(1.0, spring, damping, friction, unseen=("mass",))
@@ -170,7 +169,7 @@ def _on_base(tests: tuple[TestRecord, ...], measurement: Measurement) -> Numbers
 def against_input(measurement: Measurement) -> frozenset[str]:
     """Responses that a mass on a moving base explains better if they are relative to the base."""
     tests, quantity = measurement.tests[:TESTS], str(measurement.recorded_input)
-    if quantity not in ORDER or any(test.input is None for test in tests):
+    if quantity not in MOTIONS or any(test.input is None for test in tests):
         return frozenset()
     names = set.intersection(*(set(test.responses) for test in tests))
     left = {(name, of): _shaken(tests, name, of, quantity)[0] for name in names for of in (False, True)}
@@ -189,11 +188,11 @@ def _shaken(
     for test in tests:
         response = test.responses[name]
         assert test.input is not None
-        omega, window = _frequencies(test), np.hanning(response.size)
+        omega, window = _frequencies(response, test.sampling_rate), np.hanning(response.size)
         y, u = (np.fft.rfft((each - each.mean()) * window) for each in (response, test.input))
         used = (np.abs(y) ** 2 > LINES * np.max(np.abs(y) ** 2)) & (omega > 0.0)
         rate = np.where(used, 1j * omega, 1.0)
-        y, u = y / rate ** ORDER[name], u / rate ** ORDER[quantity]
+        y, u = y / rate ** MOTIONS.index(name), u / rate ** MOTIONS.index(quantity)
         stretch, absolute = (y, y + u) if relative else (y - u, y)
         velocity = np.where(used, 1j * omega * stretch, 0.0)
         direction = np.fft.rfft(np.sign(np.fft.irfft(velocity, response.size)) * window)
@@ -207,6 +206,6 @@ def _shaken(
     return float(left), (factors / size).tolist()
 
 
-def _frequencies(test: TestRecord) -> np.ndarray:
-    """Angular frequencies (rad/s) of a spectrum of the records of a test."""
-    return 2.0 * pi * np.fft.rfftfreq(test.time.size, 1.0 / test.sampling_rate)
+def _frequencies(signal: np.ndarray, rate: float) -> np.ndarray:
+    """Angular frequencies (rad/s) of the spectrum of a signal (n,)."""
+    return 2.0 * pi * np.fft.rfftfreq(signal.size, 1.0 / rate)

@@ -47,7 +47,15 @@ def tests_of(surveys: Sequence[Survey]) -> list[Guessed]:
         return [replace(test, reason="no column is known as a motion") for test in found]
     if others:
         moving = [_joined(test, other) for test, other in zip(moving, others, strict=False)]
-    return [part for test in moving for part in _with_kind(test)]
+    tests = [part for test in moving for part in _with_kind(test)]
+    # Only loops that all have a load tell the coefficient of friction; without it a load is of no use.
+    if all(test.kind == LOOP and test.run.load is not None for test in tests):
+        return tests
+    return [replace(test, run=_without_load(test.run)) for test in tests]
+
+
+def _without_load(run: Run) -> Run:
+    return run if run.load is None else replace(run, load=None, left=(*run.left, run.load))
 
 
 def _rate(survey: Survey) -> float | None:
