@@ -87,13 +87,14 @@ def share_jumps(force, shares):
     ``shares`` (k - 1,): of each interval, after which the force jumps; NaN: it does not. Otherwise the time
     of each jump would be rounded to the grid.
     """
-    jump = np.diff(force)
-    for i in range(jump.size):
-        late = shares[i] - 0.5
+    before = force[0]
+    for i in range(shares.size):
+        jump, late = force[i + 1] - before, shares[i] - 0.5
+        before = force[i + 1]
         if late < 0.0:
-            force[i] -= late * jump[i]
+            force[i] -= late * jump
         elif late > 0.0:
-            force[i + 1] -= late * jump[i]
+            force[i + 1] -= late * jump
 
 
 @compiled

@@ -98,7 +98,7 @@ class _EventFunction(NamedTuple):
 
 
 @searched(_EventFunction)
-@inlined
+@inner
 def _value(share, function):
     step = function.step
     y = dense_output(share, step)

@@ -133,13 +133,20 @@ def moved_freely(y, following, change, step, p):
     return damper_play.with_rod(following, damper_play.rod_after(y, slip(y, p) * step, p), p)
 
 
-@implement(interface.rate, OSCILLATOR)
+@implement(interface.rate, PLAIN)
 @inlined
-def rate(t, y, mode, p):
+def plain_rate(t, y, mode, p):
     """dy/dt, and the load."""
     now = load(t, y, mode, p)
     gain = (now - resistance(now, y, mode, p)) / p.oscillator.mass
     return (y[VELOCITY], gain) + hooks.rates(slip(y, p), now, mode, y, p), now  # noqa: RUF005
+
+
+@implement(interface.rate, OSCILLATOR)
+@inner
+def rate(t, y, mode, p):
+    """As ``plain_rate``, in one copy for all stages of a step: effects make it long."""
+    return plain_rate(t, y, mode, p)
 
 
 # Events

@@ -41,13 +41,6 @@ for _declared, _written in (
 implement_shared(SUSPENSION)
 
 
-@implement(interface.rate, "base")
-@inner
-def base_rate(t, y, mode, p):
-    """As ``transitions.rate``, in one copy for all stages of a step: the base model takes few such steps."""
-    return transitions.rate(t, y, mode, p)
-
-
 @implement(interface.event_count, SUSPENSION)
 @inlined
 def event_count(p):

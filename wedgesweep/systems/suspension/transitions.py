@@ -36,7 +36,7 @@ from wedgesweep.systems.suspension.set_valued import (
 STEPS_FROM_REST = 4
 
 
-@inlined
+@inner
 def rate(t, y, mode, p):
     """dy/dt, and the forces."""
     now = stuck_forces(t, y, mode, p) if stuck(mode, p) else forces_of_mode(t, y, mode, p)
