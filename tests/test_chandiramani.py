@@ -338,6 +338,7 @@ def outcome():
     return chandiramani.investigate(1, told.append, hypotheses, (Budget(2, 1),) * 3), told
 
 
+@pytest.mark.acceptance
 def test_an_investigation_searches_every_scenario_and_reports_every_hypothesis(outcome):
     found, told = outcome
     assert len(found.scenarios) == 2 * 2 * len(INTERPRETATIONS)

@@ -113,6 +113,7 @@ def test_a_linear_suspension_unloads_by_its_harmonic_inertia():
     assert swing[0] == pytest.approx(-swing[1], rel=1e-5)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("law", ["coulomb", "static-dynamic", "exponential"])
 @pytest.mark.parametrize("beta", [0.4, 1.75])
 def test_forces_on_faces_are_those_of_fine_waveforms_by_both_solvers(law, beta):

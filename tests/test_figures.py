@@ -73,7 +73,7 @@ def grid(request):
     return fixture_dataset.build(**GRIDS[request.param])
 
 
-@pytest.mark.few(6)
+@pytest.mark.few(3)
 @pytest.mark.parametrize("kind", KINDS)
 def test_draws_small_and_large_grids(kind, grid):
     if grid["status"].size == 1 and kind in FEWEST:
@@ -87,12 +87,13 @@ def test_draws_small_and_large_grids(kind, grid):
     figures.draw(grid, kind).draw_without_rendering()
 
 
-@pytest.mark.few(3)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("kind", KINDS)
 def test_draws_a_sweep_in_which_every_case_failed(kind, dataset):
     figures.draw(everything_failed(dataset), kind).draw_without_rendering()
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("kind", KINDS)
 def test_list_of_cases(kind, dataset):
     ds = fixture_dataset.as_cases(dataset)
@@ -169,7 +170,7 @@ def test_a_new_figure_is_one_file(dataset, tmp_path, monkeypatch):
     assert drawn.get_suptitle() == "synthetic\nStick fractions"
 
 
-@pytest.mark.few(3)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_single_panel_is_drawn_into_given_axes(kind, dataset):
     one = dataset.sel(friction_law="coulomb")
@@ -259,6 +260,7 @@ def test_small_motions_do_not_depend_on_whether_joints_may_open(held):
     assert np.isfinite(list(opens.values())).all()
 
 
+@pytest.mark.acceptance
 def test_what_the_base_model_knows_is_not_said_of_effects_with_mechanics_of_their_own(tmp_path, dataset):
     (tmp_path / "crossing.toml").write_text(CROSSING)
     numbers = physics(config.load(tmp_path / "crossing.toml"))

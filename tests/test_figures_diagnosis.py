@@ -59,7 +59,7 @@ def test_draws_and_says_what_it_shows(kind):
     assert diagnosis.FIGURES[kind].load().draw.__doc__.count("To see:") == 1
 
 
-@pytest.mark.few(6)
+@pytest.mark.few(2)
 @pytest.mark.parametrize("verdict", fixture_diagnosis.CASES)
 @pytest.mark.parametrize("kind", KINDS)
 def test_every_verdict(kind, verdict):
@@ -74,7 +74,7 @@ def test_every_verdict(kind, verdict):
         draw(kind, result)
 
 
-@pytest.mark.few(4)
+@pytest.mark.few(2)
 @pytest.mark.parametrize("kind", KINDS)
 def test_many_tests_without_velocity_and_amplitude(kind):
     result = build(tests=40, velocity=False, known=False)
@@ -87,6 +87,7 @@ def test_many_tests_without_velocity_and_amplitude(kind):
     assert figure.get_figwidth() < 11.5
 
 
+@pytest.mark.acceptance
 def test_responses_that_were_not_found_and_channels_that_are_missing():
     result = build(tests=3)
     data = result.data
@@ -257,6 +258,7 @@ def test_parts_of_one_record_are_one_spectrogram():
         figures.draw(short, "spectrogram", tests=[0, 2])
 
 
+@pytest.mark.acceptance
 def test_figures_of_an_oscillator_say_what_it_has():
     """Axes and titles of a mass under a force name neither bolster nor side frame."""
     result = build(tests=4)

@@ -122,6 +122,7 @@ def test_whatever_netcdf4_raises_the_file_is_damaged(here, monkeypatch):
 
 
 def test_an_empty_file_is_replaced_where_that_is_asked_for(here):
+    (here / "small.toml").write_text(FAST)
     (here / "small.nc").touch()
     assert "small.nc: empty file; run --fresh replaces it" in invoke("run", "small.toml", code=2)
     invoke("run", "small.toml", "--fresh")
@@ -176,6 +177,7 @@ def test_a_full_disk_is_told_with_the_file_and_loses_nothing(here, limit, file):
     assert not list(here.glob(".small*"))
 
 
+@pytest.mark.acceptance
 def test_umlauts_where_the_locale_has_none(here):
     """The locale C knows ASCII only; files are UTF-8 all the same."""
     (here / "prüfstand.toml").write_text(CONFIG.replace('"small"', '"Prüfstand µ"'), encoding="utf-8")

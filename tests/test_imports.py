@@ -173,6 +173,7 @@ UNLOADED = {
         *OPTIONAL,
         *("scipy", "numba", "numpy", "wedgesweep.config"),
     ),
+    "import wedgesweep.sweep.cases": ("xarray", "pandas", "matplotlib"),  # what each job of a sweep loads
     "from wedgesweep.sweep import dataset, variables": (*OPTIONAL, "numba", "scipy", "wedgesweep.config"),
     "from wedgesweep.sweep import outcomes; from wedgesweep.figures import models": (
         *("matplotlib", "numba", "scipy", "wedgesweep.config"),

@@ -50,6 +50,7 @@ def text(path, *columns, header="", delimiter=",", decimals=6):
     return path
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize(("name", "write"), fixture_formats.SPECIMENS)
 def test_every_format_gets_in_as_it_is(tmp_path, name, write):
     t, d, v = vibration()
@@ -81,6 +82,7 @@ def test_formats_without_names(tmp_path):
         assert test.sampling_rate == pytest.approx(RATE)
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize(
     "header", ["", "time (s);weg [mm];kraft [N]", "# t, s\n# run 7", "t;pos;load\ns;mm;N"]
 )
@@ -118,6 +120,7 @@ def test_a_load_that_one_file_lacks_is_not_used(tmp_path):
     assert '"Load N"' in (tmp_path / "measured.toml").read_text()
 
 
+@pytest.mark.acceptance
 def test_a_damper_does_not_stand_for_the_friction_of_a_shaken_mass(tmp_path):
     files, t, spring, damping, friction = [], np.arange(4000) / 250.0, 1400.0, 2.3, 1.2
     for frequency in (3.0, 5.5, 8.0):
@@ -260,6 +263,7 @@ SETS = {
 }
 
 
+@pytest.mark.few(3)
 @pytest.mark.skipif(not REAL.is_dir(), reason="the recordings are not here")
 @pytest.mark.parametrize("name", SETS)
 def test_recordings_get_in_as_delivered(tmp_path, name):
@@ -276,6 +280,7 @@ SMALL = ("excel-days", "force-negated-one-loop", "input-negated", "iso-time", "t
 SMALL += ("units-row-unknown",)
 
 
+@pytest.mark.few(2)
 @pytest.mark.skipif(not REAL.is_dir(), reason="the recordings are not here")
 @pytest.mark.parametrize("name", SMALL)
 def test_small_sets_get_in(tmp_path, name):

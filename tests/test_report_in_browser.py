@@ -78,6 +78,7 @@ def test_every_figure_has_a_size_and_is_inside_the_page(tab, page):
         assert min(tab.evaluate(small)) >= 10.0
 
 
+@pytest.mark.acceptance
 def test_a_figure_opens_large_on_a_tap_and_closes_where_it_was(tab, page):
     box = "(({left, top, width, height}) => [left, top, width, height])"
     box += "(document.querySelector('figure').getBoundingClientRect())"
@@ -96,6 +97,7 @@ def test_a_figure_opens_large_on_a_tap_and_closes_where_it_was(tab, page):
         assert height < 900
 
 
+@pytest.mark.acceptance
 def test_texts_stand_out_in_light_and_dark(tab, page):
     backgrounds = []
     for dark in (False, True):
@@ -105,6 +107,7 @@ def test_texts_stand_out_in_light_and_dark(tab, page):
     assert backgrounds[0] != backgrounds[1]
 
 
+@pytest.mark.acceptance
 def test_prints(tab, page, tmp_path):
     tab.open(page, dark=True)
     assert tab.print().startswith(b"%PDF")

@@ -36,6 +36,7 @@ def directory(runs, tmp_path_factory):
     return made
 
 
+@pytest.mark.acceptance
 def test_recorded_verdicts_decide_the_outcome(runs, monkeypatch, tmp_path):
     monkeypatch.setattr(reproduction, "FIGURES", {})
     told = []
@@ -131,6 +132,7 @@ def test_finished_runs_are_kept_and_others_made_again(tmp_path, configs):
     assert changed.breakaway.ds["amplitude"].values.tolist() == [6e-4]
 
 
+@pytest.mark.acceptance
 def test_an_unfinished_run_of_another_version_gives_way(tmp_path, configs):
     def stop(records, total):
         if len(records):

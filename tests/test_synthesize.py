@@ -211,6 +211,7 @@ def test_an_uncertain_number_is_off_and_told(here):
         assert contents(here / "made")[name] == contents(here / "certain")[name]
 
 
+@pytest.mark.acceptance
 def test_an_uncertain_distortion_is_the_same_in_all_tests_and_told(here):
     # An oscillator: its code for such inputs is shared with tests of releases.
     tests = TESTS.replace("20.0", "3.0").replace("28.0", "4.0").replace("0.1", "4.0")

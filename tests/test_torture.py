@@ -35,6 +35,7 @@ def outcomes(given, place, numbers, *words):
     return found
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize("kind", TRIED | FEW)
 def test_hostile_inputs_are_refused_or_understood(given, tmp_path, kind):
     found = outcomes(given, tmp_path / "input", range((TRIED | FEW)[kind]), "--kind", kind)
@@ -46,6 +47,7 @@ def test_hostile_files_of_every_format_are_refused_or_understood(given, tmp_path
     assert {REFUSED, ACCEPTED} == {*found}
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize("name", formats.WRITERS)
 def test_a_format_that_is_not_spoiled_is_accepted(given, tmp_path, monkeypatch, name):
     """Else its mutations would all be refused for a fault of the specimen."""
@@ -66,6 +68,7 @@ def test_a_number_gives_the_same_input_again(given, tmp_path):
         assert made[0] == made[1]
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize(
     ("fails", "outcome"),
     [
@@ -87,6 +90,7 @@ def test_faults_are_seen(tmp_path, monkeypatch, fails, outcome):
     assert judge(["check", "c.toml"], limit).outcome == outcome
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     "said", ["title: nan", "versions: numba inf", "-inf   20   0.3", 'unit "-inf= -inf"']
 )

@@ -112,6 +112,7 @@ def test_the_true_effect_leads_the_ladder():
     assert one.best.held_out < search.data.noise_floor < none.best.held_out
 
 
+@pytest.mark.acceptance
 def test_a_cause_leads_though_the_model_is_nowhere_right_to_within_the_noise():
     data = drawn({**LAG, "displacement_gain": {"scale": 1.004}}, std=1e-4, level=0.005)
     search, base, singles = searched(data, "guide_friction", "velocity_lag", "bolster_mass")
@@ -124,6 +125,7 @@ def test_a_cause_leads_though_the_model_is_nowhere_right_to_within_the_noise():
     assert none.best.held_out > 5.0 * one.best.held_out
 
 
+@pytest.mark.acceptance
 def test_explanations_on_copies_of_the_data_are_rated(monkeypatch):
     """As after a fit that knows more of the records' start; the second best waits for its turn."""
     monkeypatch.setattr(ladder, "REFINED", 1)

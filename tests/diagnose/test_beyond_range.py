@@ -46,6 +46,7 @@ def friction_of(scale):
     return drawn({"friction_level": {"scale": scale}}, 3, 0.02, std=0.001)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("scale", [0.3, 2.6])
 def test_a_cause_beyond_the_range_is_named(scale):
     assert not 0.5 <= scale <= 2.0
@@ -58,6 +59,7 @@ def test_a_cause_beyond_the_range_is_named(scale):
     assert told["searched"] == [0.5, 2.0]
 
 
+@pytest.mark.acceptance
 def test_a_number_inside_of_its_range_is_told_without_it():
     search, _, found, _ = explain(Search.of(friction_of(1.5), ("friction_level", "viscous_damping")))
     assert search.wider == ()

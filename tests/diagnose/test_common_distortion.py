@@ -89,6 +89,7 @@ def test_parts_and_harmonics_are_the_same_numbers():
     np.testing.assert_allclose(found.at({"bolster_mass": {"scale": 1.2}}), [1.2, *found.mean[1:]])
 
 
+@pytest.mark.acceptance
 def test_a_common_distortion_as_large_as_declared_is_not_missing():
     data = replace(distorted(STD), model_error=0.02)
     assert finding_of(data)[1].best.effects == (DISTORTION,)
@@ -107,6 +108,7 @@ def test_a_common_distortion_far_larger_than_declared_is_the_cause():
         assert found.best.fit.values[DISTORTION][name] == pytest.approx(10.0 * STD, rel=0.1)
 
 
+@pytest.mark.acceptance
 def test_a_cause_beside_a_common_distortion_is_named_alone():
     data = replace(distorted(STD, effects={"viscous_damping": {"coefficient": 8.0}}), model_error=0.02)
     _, found = finding_of(declared(data))

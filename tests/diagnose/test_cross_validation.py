@@ -36,6 +36,7 @@ def test_less_error_than_is_allowed_is_no_excess():
     assert gain.interval == [1.0, 1.0]
 
 
+@pytest.mark.acceptance
 def test_what_a_test_tells_of_its_own_amplitude_is_not_left_as_noise():
     """Squared misfit of a right model, less what noise should leave."""
     for std, known, least, most in ((1e-5, True, 1.0, 1.05), (0.5, True, 1.9, 2.0), (0.0, False, 2.0, 2.0)):
@@ -58,6 +59,7 @@ def test_retuning_alone_gains_nothing():
     assert base_square == pytest.approx(noise, rel=0.2)
 
 
+@pytest.mark.acceptance
 def test_a_cause_that_only_the_test_left_out_shows_predicts_nothing():
     """An end stop that one test touches: without this test its clearance and stiffness may be anything."""
     data = drawn({"end_stop": {"clearance": 3.6e-4, "stiffness": 2e5}}, std=0.015)

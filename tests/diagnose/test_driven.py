@@ -96,6 +96,7 @@ def test_a_cause_is_named_under_a_recorded_motion(tmp_path, kind):
     assert value == pytest.approx(4.0, rel=0.05)
 
 
+@pytest.mark.acceptance
 def test_nothing_is_missing_where_nothing_is(tmp_path):
     assert diagnosed(write(tmp_path, INPUTS["sweep"]()), CANDIDATES).verdict == "nothing-missing"
 
@@ -181,6 +182,7 @@ def test_a_test_without_input_says_so(tmp_path):
     assert read(path).tests[0].input is None
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("to_s", [TIMES[-1], 4.0, 2.0])
 def test_no_simulation_begins_where_the_filter_of_the_input_has_not_settled(tmp_path, to_s):
     path = write(tmp_path, [4e-3 * chirp(2.0)], noise=(2e-6, 1e-6))

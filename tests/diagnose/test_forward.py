@@ -1,5 +1,7 @@
 """Effects that are added one at a time are the hidden ones, and the tests left out end it."""
 
+import pytest
+
 from tests.diagnose.synthetic import LAG, drawn, searched
 from wedgesweep.diagnose.cross_validation import Predictor
 from wedgesweep.diagnose.explanation import Explanation
@@ -33,11 +35,13 @@ def test_the_third_of_three_effects_is_added_and_no_fourth():
     assert after[3].best.held_out < 0.5 * before[2].best.held_out
 
 
+@pytest.mark.acceptance
 def test_nothing_is_added_to_the_whole_truth():
     before, after = levels_after(TWO, tuple(TWO))
     assert after == before
 
 
+@pytest.mark.acceptance
 def test_a_pair_that_predicts_no_better_than_one_effect_is_no_ground_to_build_on():
     before, after = levels_after(LAG, ("velocity_lag", "bolster_mass"))
     assert after == before

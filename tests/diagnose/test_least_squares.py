@@ -21,6 +21,7 @@ def test_clean_data_leave_chi_squared():
     assert max(np.abs(excess)) < 4.0
 
 
+@pytest.mark.acceptance
 def test_intervals_cover_the_truth():
     pulls = []
     for seed in range(15):
@@ -30,6 +31,7 @@ def test_intervals_cover_the_truth():
     assert abs(np.mean(pulls)) < 1.0
 
 
+@pytest.mark.acceptance
 def test_the_error_of_a_simulation_is_no_information():
     """A stiff end stop that two tests touch: amplitude, clearance and stiffness are hard to tell apart."""
     truth = {"end_stop": {"clearance": 3.5e-4, "stiffness": 2e5}}

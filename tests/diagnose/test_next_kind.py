@@ -119,6 +119,7 @@ def test_a_distance_is_the_excess_that_a_fit_would_leave(tmp_path):
         assert fit.chi2 == pytest.approx(distance, rel=0.05)
 
 
+@pytest.mark.acceptance
 def test_a_steady_measurement_may_be_told_another_kind():
     """Neither sines of the base nor free motions tell mass from spring; friction is uncertain here."""
     model = parse(SPRING_AND_MASS.replace("normal_force_N = 1.0", "normal_force_N = 0.05"), "model")
@@ -133,6 +134,7 @@ def test_a_steady_measurement_may_be_told_another_kind():
     assert recommend(easy).kind == "steady"
 
 
+@pytest.mark.acceptance
 def test_no_kind_tells_an_explanation_from_itself(tmp_path):
     data = dropped(tmp_path)
     assert recommend([explained(data, DAMPED)] * 2) is None

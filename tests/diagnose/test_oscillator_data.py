@@ -85,6 +85,7 @@ def frictionless(contact, quantity, channel, of):
     )
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize("of", ["relative", "absolute"])
 @pytest.mark.parametrize(
     ("contact", "quantity", "channel"),

@@ -27,7 +27,7 @@ def worn(first, last, seed=0, since=4):
     return replace(several[0], spectra=spectra)
 
 
-@pytest.mark.few(1)
+@pytest.mark.acceptance
 @pytest.mark.parametrize("effect", RIGHT)
 def test_numbers_of_the_right_effect_are_constant_as_often_as_chance_has_it(effect):
     found = []

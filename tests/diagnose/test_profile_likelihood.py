@@ -72,6 +72,7 @@ def compliance(level):
     return fit, profile_likelihood(fit, serial)
 
 
+@pytest.mark.acceptance
 def test_the_flatter_side_of_chi2_counts():
     before, fit = compliance(0.1)
     assert max(rises(before)) > 1.2 * min(rises(before))

@@ -198,6 +198,7 @@ def test_the_cause_is_named_and_the_distortion_is_not_blamed():
     assert value == pytest.approx(3.0, rel=0.1)
 
 
+@pytest.mark.acceptance
 def test_without_a_cause_nothing_is_missing_though_the_input_is_distorted():
     found = diagnose(measurement(2), ("viscous_damping", "input_distortion", "stribeck"))
     assert found.finding.verdict == "nothing-missing"
@@ -226,6 +227,7 @@ def test_the_noise_of_the_input_counts_as_the_right_model_passes_it_on():
     assert np.median(after) > 0.1
 
 
+@pytest.mark.acceptance
 def test_a_diagnosis_ends_with_the_covariance_of_its_cause():
     found = diagnose(stiff(1), ("bolster_stiffness", "viscous_damping"))
     assert found.finding.verdict in ("named", "consistent-with")
@@ -235,6 +237,7 @@ def test_a_diagnosis_ends_with_the_covariance_of_its_cause():
     assert fit.model.data is found.data
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("of", ["relative", "absolute"])
 def test_one_gain_of_the_input_serves_all_tests(of):
     """The recorded input is 3 % too small in all tests; channels that it converts are wrong as well."""
@@ -295,6 +298,7 @@ def test_bootstrap_samples_have_the_noise_of_responses_and_inputs():
     assert np.std(squares) == pytest.approx(np.sqrt(2.0 * expected), rel=0.25)
 
 
+@pytest.mark.acceptance
 def test_numbers_of_single_tests_are_part_of_the_model():
     """A heavier bolster in every other test: known, it is not missing, and the same cause is found in all."""
     heavier = [{}, {"suspension.bolster_mass_kg": 0.9}] * 2

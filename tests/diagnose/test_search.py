@@ -30,7 +30,7 @@ def test_a_rough_misfit_is_not_taken_for_that_of_a_fit():
     assert fit.chi2 == pytest.approx(model.evaluate(fit.evaluation.point).chi2, rel=1e-3)
 
 
-@pytest.mark.few(1)
+@pytest.mark.acceptance
 @pytest.mark.parametrize("length", [0.9e-6, 1.5e-6])
 def test_an_effect_with_which_the_base_model_fits_implausibly_starts_without_it(length):
     """Faces that creep where the base model's stick: it moves only with far less friction or input.

@@ -129,7 +129,7 @@ def distorted(size, seed=0, effects=None, level=0.02):
     return drawn({"input_distortion": harmonics, **(effects or {})}, seed, level, std=0.001)
 
 
-@pytest.mark.few(1)
+@pytest.mark.acceptance
 @pytest.mark.parametrize(("std", "level"), [(0.25 * STD, 0.02), (STD, 0.04)])
 def test_the_misfit_of_a_bench_with_friction_has_the_size_of_its_covariance(std, level):
     """Small harmonics are passed on in proportion; larger ones are not where they meet the resonance."""
@@ -202,6 +202,7 @@ def test_a_distortion_ten_times_as_large_is_named():
     assert search.data.renewed(fit.model.scenario(fit.point)) is search.data
 
 
+@pytest.mark.acceptance
 def test_a_cause_beside_a_distortion_as_large_as_declared_is_named_alone():
     data = replace(distorted(STD, effects={"viscous_damping": {"coefficient": 8.0}}), model_error=0.02)
     _, paired = finding_of(data)

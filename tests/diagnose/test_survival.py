@@ -82,6 +82,7 @@ def test_a_verdict_without_pairs_does_not_say_that_none_explains(failed):
     assert "none of the" not in told
 
 
+@pytest.mark.acceptance
 def test_the_report_shows_what_there_is(failed):
     found, _ = failed
     assert "ZeroDivisionError: by nothing" in render(found)
@@ -101,6 +102,7 @@ def test_an_effect_whose_fit_fails_is_no_candidate(bench, monkeypatch):
     assert "fit of stribeck (ArithmeticError: odd)" in report.sentence_of(found)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("threads", [1, 2])
 def test_an_interrupt_ends_in_what_was_found(bench, monkeypatch, threads):
     fit, begun = search.single_fits.__globals__["single_fit"], itertools.count()
@@ -126,7 +128,7 @@ def test_before_the_base_model_is_fitted_there_is_nothing_to_report(bench, monke
 def test_the_time_limit_is_looked_at_in_every_simulation(bench):
     """The share that is used up rises with each look; a diagnosis has some 1,700, single effects 120."""
     done = []
-    for looks in (3, 300):
+    for looks in (3, 150):
         count = itertools.count()
         found = diagnosis.diagnose(
             bench, CANDIDATES, time_used=lambda count=count, looks=looks: next(count) / looks
@@ -170,6 +172,7 @@ def test_a_time_limit_has_a_unit(given):
     assert "is not a time such as 60s" in invoke("diagnose", BENCH, "--time-limit", given, code=2)
 
 
+@pytest.mark.acceptance
 def test_a_killed_diagnosis_leaves_a_ladder(tmp_path):
     """Killed as soon as there is a result, which is after the single effects."""
     found = tmp_path / "found"

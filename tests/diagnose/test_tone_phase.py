@@ -42,6 +42,7 @@ def recorded(phases, seed):
     return HarmonicData(model, "static-dynamic", names, spectra, AMPLITUDES, exact, {}, TONE, 0.01)
 
 
+@pytest.mark.acceptance
 def test_the_phase_of_a_vibration_explains_what_an_unknown_phase_leaves():
     before = []
     for seed, phase in enumerate(np.arange(6) * pi / 3.0):

@@ -125,6 +125,7 @@ def test_a_hidden_effect_is_found(tmp_path, effect):
         assert estimate["value"] * unit == pytest.approx(true, rel=0.02), key
 
 
+@pytest.mark.acceptance
 def test_without_a_candidate_the_base_model_is_all_there_is(tmp_path):
     path = write(tmp_path, effects={"viscous_damping": {"coefficient": 20.0}})
     found = diagnosed(path, ["cross_slip"])  # of a sine as the input

@@ -104,6 +104,7 @@ def test_a_tone_that_the_model_has_is_not_looked_for(measured):
     assert (fit_data.tone, fit_data.tone_std) == (17.3, 0.0)
 
 
+@pytest.mark.acceptance
 def test_what_the_model_has_switched_off_is_a_candidate_still(measured):
     silent = "[effects.stray_vibration]\nacceleration_m_per_s2 = 0.0\nfrequency_hz = 17.3\n"
     (measured.parent / "model.toml").write_text(f"{MODEL}{silent}[effects.guide_friction]\n")

@@ -66,6 +66,7 @@ def test_without_work_left_singles_are_fitted_and_the_rest_is_told():
     assert set(map(frozenset, never)) == set(map(frozenset, combinations(CANDIDATES, 2)))
 
 
+@pytest.mark.acceptance
 def test_a_budget_ends_the_search_for_pairs_at_the_same_place_with_any_number_of_threads():
     def searched(threads, total):
         search, base, singles, scans = single_fits(base_fit(Search.of(drawn(PAIR), CANDIDATES, threads)))

@@ -28,6 +28,7 @@ SMALL = {
 }
 
 
+@pytest.mark.few(6)
 @pytest.mark.parametrize("name", SMALL)
 def test_what_is_wrong_with_a_set_is_told(name):
     valid, words = SMALL[name]
@@ -49,6 +50,7 @@ def copied(directory, name, *changes):
     return path
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize(
     ("name", "change"),
     [
@@ -62,6 +64,7 @@ def test_the_line_that_is_named_mends_it(tmp_path, name, change):
     assert "warning" not in invoke("check", copied(tmp_path, name, change))
 
 
+@pytest.mark.acceptance
 def test_rests_of_an_exact_displacement_do_not_count(tmp_path):
     path = copied(tmp_path, "loop-exact-rests")
     effects = "viscous_damping,stribeck"

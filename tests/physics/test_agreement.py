@@ -9,7 +9,7 @@ NUMBERS = (181, 2, 3, 6, 10, 100, 189, 196)
 LOCKED = {100}
 
 
-@pytest.mark.few(1)
+@pytest.mark.acceptance
 @pytest.mark.parametrize("number", NUMBERS)
 def test_radau_and_event_driven_agree(number):
     result = agreement.compared(agreement.sine, number)

@@ -63,7 +63,7 @@ def test_motion_without_stops(r, share):
     assert numbers["stick_fraction"] == 0.0
 
 
-@pytest.mark.few(1)
+@pytest.mark.acceptance
 @pytest.mark.parametrize("r", sorted(ONSETS, reverse=True))
 def test_motion_without_stops_by_radau(r):
     force_ratio = 0.5 * ONSETS[r]

@@ -34,6 +34,7 @@ def test_energy_balance_over_a_steady_period(case, lean):
     assert numbers["dissipated_energy"] == pytest.approx(numbers["supplied_energy"], rel=1e-7)
 
 
+@pytest.mark.acceptance
 def test_energy_balance_by_radau():
     record = parameters.record("static-dynamic", 1e-3, 0.4 * OMEGA_N)
     numbers = steady(record, settle_periods=150, settled=1e-8)

@@ -77,7 +77,7 @@ BLOCK = {"mass": 1.0, "spring": 1.0, "normal_force": 1.0, "contact": "belt", "be
 HYPERBOLIC = {"static": 1.0, "threshold_velocity": 1.0 / 3.0}
 
 
-@pytest.mark.parametrize("solver", SOLVERS)
+@EACH_SOLVER
 def test_block_on_a_belt(solver):
     case = parameters.record("hyperbolic", 0.0, 2.0 * pi / 12.0, BLOCK, HYPERBOLIC, input_kind="force")
     run = SOLVERS[solver].solve(case, Window(2.0 * pi / 12.0, 5, 3, 16384), 1e-10, inf)
@@ -92,7 +92,7 @@ def test_block_on_a_belt(solver):
     assert -run.sums["highest"][0] == pytest.approx(-0.5554327, abs=1e-7)
 
 
-@pytest.mark.few(2)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("excitation", ["base", "force"])
 @pytest.mark.parametrize("contact", ["base", "ground", "belt"])
 @pytest.mark.parametrize("law", ["coulomb", "static-dynamic", "exponential", "hyperbolic"])

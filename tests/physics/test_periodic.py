@@ -28,6 +28,7 @@ def respond(rows, warm=None, tolerance=1e-8):
     return periodic.respond(rows, warm, periodic.Accuracy(tolerance, 400, 1e-9), 256, 7)
 
 
+@pytest.mark.few(10)
 @pytest.mark.parametrize("name", [None, *REPEATING])
 def test_a_warm_start_finds_what_a_cold_start_finds(name):
     # Against the end stops the exponential case answers with twice the input's period, by either solver.

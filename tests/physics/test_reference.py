@@ -28,7 +28,7 @@ def test_steady_response(row):
     assert numbers["stick_fraction"] == pytest.approx(row["stick_fraction"], abs=3e-4)
 
 
-@pytest.mark.few(1)
+@pytest.mark.acceptance
 @EACH_ROW
 def test_steady_response_by_radau(row):
     numbers = steady(of_row(row), settle_periods=row["settle_periods"])

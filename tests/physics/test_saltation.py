@@ -63,7 +63,7 @@ def saltation(jump, before, after, gap):
     return jump + np.outer(after - jump @ before, normal) / before[gap]
 
 
-@pytest.mark.few(2)
+@pytest.mark.acceptance
 @pytest.mark.parametrize("gap", [COLUMN_GAP, BOLSTER_GAP])
 @pytest.mark.parametrize("restitution", [0.3, 0.8])
 @pytest.mark.parametrize("seed", range(2))

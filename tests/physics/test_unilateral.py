@@ -96,7 +96,7 @@ def impacts(draw):
     return case, y, touches, draw(st.floats(0.0, 0.9))
 
 
-@settings(max_examples=300, deadline=None, derandomize=True)
+@settings(max_examples=100, deadline=None, derandomize=True)
 @given(impacts())
 def test_an_impact_keeps_momentum_obeys_coulomb_and_never_gains_energy(given_impact):
     """And impulses are those of Moreau's law."""
@@ -141,6 +141,7 @@ def states_after(case, y, steps):
     return np.array(seen)
 
 
+@pytest.mark.acceptance
 def test_free_flight_is_a_parabola():
     step, steps = 2e-3, 20
     case = without_input(step, wedge_spring=0.0)
@@ -161,6 +162,7 @@ def test_free_flight_is_a_parabola():
     assert seen[:, BOLSTER_GAP] == pytest.approx(face, abs=1e-9)
 
 
+@pytest.mark.acceptance
 def test_a_bouncing_block_comes_to_rest_at_the_known_time():
     """Restitution 0.5: heights fall by 1/4, times by 1/2, and the last impact comes after 3 fall times."""
     height, restitution, lean = 1e-3, 0.5, -0.3

@@ -116,6 +116,7 @@ def test_workers_of_another_version_are_refused(tmp_path, cluster, monkeypatch):
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.acceptance
 def test_a_killed_worker_costs_its_chunk_only(tmp_path, expected, cluster):
     before, told = workers(cluster), []
 
@@ -178,6 +179,7 @@ def test_no_scheduler(tmp_path, monkeypatch, scheduler):
     assert [(client.status, options["timeout"]) for client, options in made] == [("closed", 0.5)]
 
 
+@pytest.mark.acceptance
 def test_a_scheduler_without_workers(tmp_path, monkeypatch):
     monkeypatch.setattr(clusters, "TIMEOUT", 1.0)
     with distributed.LocalCluster(n_workers=0, dashboard_address=":0") as cluster:

@@ -89,6 +89,7 @@ def restarted(case, state, period):
     return response.evaluate(run, case, 9).numbers["amplitude_ratio"], (after - state) / scale
 
 
+@pytest.mark.acceptance
 def test_both_sides_are_steady_states(tmp_path, steep):
     swept = small_sweep.sweep(tmp_path, STEEP)
     line = swept.rows.cases(np.array([0]))[0]
@@ -144,6 +145,7 @@ def test_a_line_follows_its_neighbours_and_no_other_line(steep, tmp_path):
         assert np.array_equal(records[name].reshape(expected.shape), expected), name
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(("chunk", "n_jobs"), [(1, 1), (20, 1), (200, 2)])
 def test_chunks_and_jobs_change_no_bit(tmp_path, monkeypatch, steep, chunk, n_jobs):
     monkeypatch.setattr(chunks, "CHUNK", chunk)

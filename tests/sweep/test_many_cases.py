@@ -136,6 +136,7 @@ def test_a_fault_of_a_list_is_told_with_its_place(betas, fault):
         config.parse(f'[sweep]\nfriction_law = "coulomb"\nbeta = [{betas}]\namplitude_mm = 1.0\n')
 
 
+@pytest.mark.few(5)
 @pytest.mark.parametrize("shape", [(1,), (63,), (64,), (65,), (2, 30, 30), (3, 160, 210)])
 @pytest.mark.parametrize("method", ["radau", "event-driven"])
 def test_every_case_is_in_one_chunk(shape, method):

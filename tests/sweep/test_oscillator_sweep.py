@@ -60,6 +60,7 @@ def test_another_friction_is_not_the_published_one():
         assert [each.holds for each in checks] == [True, holds]
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("excitation", INPUTS)
 @pytest.mark.parametrize("contact", ["base", "ground"])
 def test_dataset_says_what_it_holds(contact, excitation):

@@ -177,6 +177,7 @@ def test_peaks_of_a_decay_fall_by_four_friction_over_stiffness(folder):
     assert ring_down.decrement(np.array([4.0, -3.0, 2.0]))[0] == pytest.approx(np.log(2.0))
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("kind", sorted(figures.transient.FIGURES))
 @pytest.mark.parametrize("name", ["release", "swept"])
 def test_every_figure_draws_and_has_units(folder, kind, name):

@@ -61,6 +61,7 @@ def test_it_gives_up_where_workers_die_of_something_else(monkeypatch):
         solved(np.arange(4)[:, None], 1, partial(deadly, wrong=[0]))
 
 
+@pytest.mark.acceptance
 def test_a_sweep_goes_on_with_the_same_bits(tmp_path):
     """Killed from outside while it solves."""
     told, killed, remarks = [], [], []

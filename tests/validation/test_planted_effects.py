@@ -18,10 +18,12 @@ GAIN = Specimen("gain", "static-dynamic", {"displacement_gain": {"scale": 1.15}}
 CANDIDATES = ["displacement_gain", "bolster_stiffness", "bolster_mass", "friction_level", "preload"]
 
 
+@pytest.mark.acceptance
 def test_a_strong_cause_is_named_with_its_numbers(tmp_path):
     checks.strong_cause_is_named(GAIN, tmp_path, CANDIDATES)
 
 
+@pytest.mark.acceptance
 def test_in_clean_data_nothing_is_named(tmp_path):
     measured, _ = make(replace(CLEAN, tests=FEW), tmp_path)
     found = diagnose(measured, tmp_path / "found", CANDIDATES)
