@@ -408,6 +408,7 @@ def test_an_error_of_the_system_without_a_number_is_told():
     assert str(_failure(TimeoutError())) == "TimeoutError"
 
 
+@pytest.mark.acceptance
 @pytest.mark.usefixtures("empty_pictures")
 def test_plot_all(here, drawn_dataset):
     invoke("plot", "all", drawn_dataset, "-o", "new/figures", "--beta", 0.4)

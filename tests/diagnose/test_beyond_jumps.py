@@ -25,7 +25,7 @@ def starting_at(model, starts):
     return replace(point, nuisance=np.column_stack([starts, point.nuisance[:, 2:]]))
 
 
-@pytest.mark.few(1)
+@pytest.mark.acceptance
 @pytest.mark.parametrize("displacement", JUST_PASSES)
 def test_a_fit_gets_over_a_stop(tmp_path, displacement):
     starts = ((0.0102, 0.0), (displacement, -0.05), (-0.0091, 0.02))

@@ -82,6 +82,7 @@ def place(tmp_path_factory):
     return folder / "made" / "measured.toml"
 
 
+@pytest.mark.acceptance
 def test_the_load_tells_preload_from_friction_where_the_motion_does_not(place):
     data = harmonic_data(measured.read(place))
     assert data.observations.tolist() == [4 * 16 + 2 * 16 + 1] * 4

@@ -154,6 +154,7 @@ def test_motion_against_the_ground_is_the_motion_against_the_base_and_its_own(tm
     assert [each["effect"] for each in found.causes] == ["viscous_damping"]
 
 
+@pytest.mark.acceptance
 def test_a_gain_error_of_the_input_is_in_a_motion_that_was_converted_with_it(tmp_path):
     """What was recorded is the motion against the ground, and an input that is 3 % too small."""
     path = write(tmp_path, [4e-3 * chirp()], more="[measurement.uncertain]\nbolster_mass = 0.01\n")
@@ -196,6 +197,7 @@ def test_no_simulation_begins_where_the_filter_of_the_input_has_not_settled(tmp_
     assert all(each.grid.lead > 0 for each in windows)
 
 
+@pytest.mark.acceptance
 def test_bristles_that_were_at_work_before_a_window_are_simulated_from_there(tmp_path):
     # A filter of the input has not settled at either end of a record, which is not compared there.
     path = write(tmp_path, [4e-3 * chirp(2.0)], {"presliding": {"length": 1e-3}}, noise=(2e-6, 1e-6))

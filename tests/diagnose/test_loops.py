@@ -228,6 +228,7 @@ def test_a_motion_that_is_no_faster_than_its_noise_is_refused(tmp_path):
         loop_data(read(path))
 
 
+@pytest.mark.acceptance
 def test_an_error_of_a_reversal_is_an_error_of_the_force(tmp_path):
     """Covariance of what noise of the motion makes of the force, against what it made in 100 records."""
     data = loop_data(read(write(tmp_path, noise=(2e-5, 0.02))))

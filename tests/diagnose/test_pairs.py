@@ -3,6 +3,7 @@
 from types import SimpleNamespace
 
 import numpy as np
+import pytest
 
 from tests.diagnose.synthetic import drawn, next_to_breakaway
 from wedgesweep.diagnose import pairs
@@ -23,6 +24,7 @@ def test_an_effect_that_shows_only_beside_another_is_tried_beside_all(monkeypatc
     assert best.fit.p > 1e-3
 
 
+@pytest.mark.acceptance
 def test_where_responses_do_not_add_the_second_effect_begins_with_nothing():
     """By every start of the damper that was tried a test sticks."""
     search, base, *_ = base_fit(Search.of(next_to_breakaway(), ("stribeck", "viscous_damping")))

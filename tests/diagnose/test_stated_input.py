@@ -222,6 +222,7 @@ def test_a_model_that_distorts_is_distorted_further():
     assert moved["second_phase"] == pytest.approx(np.angle(both))
 
 
+@pytest.mark.acceptance
 def test_a_whole_diagnosis_of_distorted_tests_finds_nothing_missing():
     found = diagnose(frictionless(7, distorted=True), ("input_distortion", "viscous_damping"))
     assert found.finding.verdict == verdict.NOTHING

@@ -132,6 +132,7 @@ def test_without_a_candidate_the_base_model_is_all_there_is(tmp_path):
     assert (found.verdict, found.causes) == ("none-of-mine", [])
 
 
+@pytest.mark.acceptance
 def test_nothing_is_missing_where_nothing_is(tmp_path):
     assert diagnosed(write(tmp_path), ["viscous_damping", "friction_level"]).verdict == "nothing-missing"
 

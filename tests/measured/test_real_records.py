@@ -28,7 +28,7 @@ SMALL = {
 }
 
 
-@pytest.mark.few(6)
+@pytest.mark.few(4)
 @pytest.mark.parametrize("name", SMALL)
 def test_what_is_wrong_with_a_set_is_told(name):
     valid, words = SMALL[name]

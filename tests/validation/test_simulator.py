@@ -9,7 +9,7 @@ from wedgesweep.friction import LAW_NAMES
 PHASES, SETTLE = 128, 60
 
 
-@pytest.mark.few(1)
+@pytest.mark.acceptance
 @pytest.mark.parametrize("law", LAW_NAMES)
 @pytest.mark.parametrize(("frequency", "amplitude"), [(8.0, 0.8e-3), (24.0, 0.1e-3)])
 def test_without_its_effects_it_is_the_base_model(law, frequency, amplitude):
