@@ -49,7 +49,8 @@ def made(folder, plan, effects="", *options):
     (folder / "rig.toml").write_text(RIG + effects)
     (folder / "tests.toml").write_text(plan)
     out = folder / "data"
-    invoke("synthesize", folder / "rig.toml", "--tests", folder / "tests.toml", "-o", out, *options)
+    paths = (folder / "rig.toml", "--tests", folder / "tests.toml", "-o", out)
+    invoke("synthesize", *paths, "--n-jobs", 1, *options)
     return out / "measured.toml"
 
 
@@ -134,7 +135,8 @@ def test_a_test_in_which_a_wedge_locks_is_refused(tmp_path, plan, message):
     (tmp_path / "rig.toml").write_text(LOCKS)
     (tmp_path / "tests.toml").write_text(plan)
     out = tmp_path / "data"
-    found = invoke("synthesize", tmp_path / "rig.toml", "--tests", tmp_path / "tests.toml", "-o", out, code=2)
+    paths = (tmp_path / "rig.toml", "--tests", tmp_path / "tests.toml", "-o", out)
+    found = invoke("synthesize", *paths, "--n-jobs", 1, code=2)
     assert message in found
     assert "Traceback" not in found
     assert not out.exists()

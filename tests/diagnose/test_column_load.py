@@ -78,7 +78,7 @@ def place(tmp_path_factory):
     (folder / "true.toml").write_text(PRELOADED)
     (folder / "tests.toml").write_text(TESTS)
     options = ("--tests", folder / "tests.toml", "--normal-force", 0.005, "--n-jobs", 1)
-    invoke("synthesize", folder / "true.toml", *options, "-o", folder / "made")
+    invoke("synthesize", "--n-jobs", 1, folder / "true.toml", *options, "-o", folder / "made")
     return folder / "made" / "measured.toml"
 
 

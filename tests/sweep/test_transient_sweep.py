@@ -73,7 +73,7 @@ def folder(tmp_path, monkeypatch):
 def test_a_recorded_input_is_found_beside_its_config_and_counts_from_its_first_sample(folder, monkeypatch):
     (folder / "elsewhere").mkdir()
     monkeypatch.chdir(folder / "elsewhere")
-    assert "6 ok" in invoke("run", "../record.toml")
+    assert "6 ok" in invoke("run", "../record.toml", "--n-jobs", 1)
     ds = xr.load_dataset("record.nc")
     assert ds.sizes == {"friction_law": 2, "scale": 3, "time": 199}
     assert ds["time"].values == pytest.approx(np.arange(199) * 0.005)
@@ -87,7 +87,7 @@ def test_a_recorded_input_is_found_beside_its_config_and_counts_from_its_first_s
 
 
 def test_a_file_that_changed_is_another_sweep(folder):
-    invoke("run", "record.toml")
+    invoke("run", "record.toml", "--n-jobs", 1)
     assert "already complete" in invoke("run", "record.toml")
     text = (folder / "bump.csv").read_text()
     (folder / "bump.csv").write_text(text.replace("0.995,5.0", "0.995,5.1"))
@@ -197,7 +197,7 @@ def test_every_figure_draws_and_has_units(folder, kind, name):
 
 @pytest.mark.usefixtures("empty_pictures")
 def test_figures_of_sines_are_not_offered(folder):
-    invoke("run", "swept.toml")
+    invoke("run", "swept.toml", "--n-jobs", 1)
     told = invoke("plot", "all", "swept.nc", "-o", "drawn")
     assert told.count("wrote") == 3
     assert "there are backbone, envelope, loop, ring-down" in invoke("plot", "stick-map", "swept.nc", code=2)
