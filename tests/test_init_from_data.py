@@ -96,6 +96,21 @@ def test_numbers_of_the_model_are_those_of_the_record(tmp_path, header):
     assert "shows about 2" in (tmp_path / "model.toml").read_text()
 
 
+def test_an_elastic_joint_does_not_stand_for_a_damper(tmp_path):
+    t = np.arange(10_000) / RATE
+    x = 12.0 * np.sin(2.0 * np.pi * 0.2 * t)
+    friction = np.zeros(t.size)
+    for i in range(1, t.size):  # Dahl (1968): it builds up over 1.1 mm, whatever the velocity
+        towards = 30.0 * np.sign(x[i] - x[i - 1])
+        friction[i] = towards + (friction[i - 1] - towards) * np.exp(-abs(x[i] - x[i - 1]) / 1.1)
+    noise = np.random.default_rng(0).normal(size=(2, t.size))
+    columns = t, x + 0.003 * noise[0], 5.0 * x + friction + 0.1 * noise[1]
+    own = begun(tmp_path, text(tmp_path / "joint.csv", *columns, header="s,mm,N")).model.oscillator
+    # By all samples alike, damping would be nine tenths of the 30 N.
+    assert own["damping"] * 2.0 * np.pi * 0.2 * 0.012 < 0.1 * 30.0
+    assert own["spring"] == pytest.approx(5e3, rel=0.03)
+
+
 def test_the_load_of_two_faces_belongs_to_the_model_of_each_test(tmp_path):
     files, random = [], np.random.default_rng(1)
     for load in (20.0, 60.0):

@@ -326,6 +326,18 @@ def test_what_is_missing_of_a_damper_is_found_among_its_neighbours(tmp_path, eff
         assert estimate["value"] == pytest.approx(true, rel=0.03), key
 
 
+@pytest.mark.acceptance
+@pytest.mark.parametrize("effect", [{"presliding": {"length": 5e-4}}, {}], ids=["elastic", "rigid"])
+def test_friction_that_the_model_lacks_may_be_elastic(tmp_path, effect):
+    smooth = OSCILLATOR.replace("normal_force_N = 10.0", "normal_force_N = 0.0")
+    hidden = {"guide_friction": {"force": 3.0}} | effect
+    path = write(tmp_path, smooth, hidden, motions=((0.01, 1.1, 6.0), (0.004, 0.7, 6.0)))
+    found = diagnosed(path, ["guide_friction", "presliding", "viscous_damping"])
+    assert [cause["effect"] for cause in found.causes] == list(hidden)
+    numbers = [each["value"] for cause in found.causes for each in cause["parameters"].values()]
+    assert numbers == pytest.approx([3.0, 0.5][: len(numbers)], rel=0.03)
+
+
 def test_strokes_in_one_direction_are_loops(tmp_path):
     path = write(tmp_path)
     header, *lines = (tmp_path / "loop0.csv").read_text().splitlines()

@@ -141,7 +141,7 @@ class Config:
         if rubs and not loads_differ:
             yield (oscillator.LATERAL,), "is friction_level where the normal force is the same in all tests"
         if not rubs:
-            yield oscillator.OF_FRICTION, "changes friction, and the model has none"
+            yield oscillator.OF_NORMAL, "changes friction, and the model has none"
         if not (rubs and loads_differ):
             yield (oscillator.OF_LOAD,), "shows only where the normal force differs from test to test"
         if self.oscillator["spring"] == 0.0:

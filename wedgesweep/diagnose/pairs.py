@@ -20,7 +20,7 @@ from wedgesweep.diagnose.explanation import Explanation, best_of_each, penalised
 from wedgesweep.diagnose.least_squares import minimise, subset_fit
 from wedgesweep.diagnose.model import ROUGH, Fit, unfitted
 from wedgesweep.diagnose.search import LEADING, Scans, Search, refit_best
-from wedgesweep.effects import go_together
+from wedgesweep.effects import EFFECTS, go_together
 
 # Starting points of the second effect.
 STARTS = 2
@@ -46,14 +46,18 @@ class SingleScan(NamedTuple):
     """What is known of one effect.
 
     ``fit``: to all tests; ``subset``: the same fit on the few tests that it fits worst. ``x`` (n, k): its
-    parameters where it was evaluated and changed the responses; ``changes`` (n, m): how it changed those of
-    the base model, whitened, all tests in a row.
+    parameters where it was evaluated and changed the responses, or all of them if it never did; ``changes``
+    (n, m): how it changed those of the base model, whitened, all tests in a row.
     """
 
     fit: Fit
     subset: Fit
     x: np.ndarray
     changes: np.ndarray
+
+    @property
+    def effects(self) -> tuple[str, ...]:
+        return self.fit.effects
 
 
 class Combination(NamedTuple):
@@ -64,7 +68,14 @@ class Combination(NamedTuple):
 
     @property
     def effects(self) -> tuple[str, ...]:
-        return (*self.first.fit.effects, *self.second.fit.effects)
+        return (*self.first.effects, *self.second.effects)
+
+    @property
+    def shows(self) -> bool:
+        """Whether the second effect changes responses by itself, or what the first one adds."""
+        (name,) = self.second.effects
+        beside = bool(len(self.second.x)) and not set(EFFECTS[name].acts_on).isdisjoint(self.first.effects)
+        return beside or bool(self.second.changes.any())
 
 
 class PairSearch(NamedTuple):
@@ -105,7 +116,7 @@ def fit_pairs(search: Search, base: Fit, singles: Sequence[Explanation], scans: 
 def _fit_combinations(job: PairSearch, combinations: Sequence[Combination], what: str) -> list[Explanation]:
     """Fits of combinations, the best first."""
     search = job.search
-    useful = [each for each in combinations if len(each.second.x) and go_together(each.effects)]
+    useful = [each for each in combinations if each.shows and go_together(each.effects)]
     begun = search.each_affordable(lambda each: starting_fit(search, each), useful, what)
     further = f"{what}, followed further"
     fits = _best_of_pairs([fit for fit in begun if np.isfinite(fit.chi2)])
@@ -154,11 +165,18 @@ def single_scan(base: Fit, fit: Fit, scan: Sequence[Evaluation]) -> SingleScan:
     changes = np.array([(base.evaluation.residual - each.residual).ravel() for each in evaluations])
     x = np.array([each.point.x[: fit.model.size] for each in evaluations])
     seen = np.array([change @ change > SEEN for change in changes], dtype=bool)
-    return SingleScan(fit, _worst_tests(fit), x[seen], changes[seen] if seen.any() else changes[:0])
+    if not seen.any():
+        return SingleScan(fit, _worst_tests(fit), x, np.zeros_like(changes))
+    return SingleScan(fit, _worst_tests(fit), x[seen], changes[seen])
 
 
 def _starts(first: Fit, second: SingleScan) -> np.ndarray:
-    """Points (STARTS, k) of the second effect that fit best beside the first if responses add."""
+    """Points (STARTS, k) of the second effect that fit best beside the first if responses add.
+
+    All of its points, if it shows beside the first only.
+    """
+    if not second.changes.any():
+        return second.x
     residual = first.evaluation.residual.ravel()
     size, along = (second.changes**2).sum(1), second.changes @ residual
     scale = np.clip(along / size, *SCALES)
@@ -168,7 +186,7 @@ def _starts(first: Fit, second: SingleScan) -> np.ndarray:
 def starting_fit(search: Search, combination: Combination) -> Fit:
     """The fit of a combination on a subset of the tests, before its first iteration."""
     fit, subset, second = combination.first.fit, combination.first.subset, combination.second
-    model = search.model(*fit.effects, *second.fit.effects, tolerance=ROUGH)
+    model = search.model(*combination.effects, tolerance=ROUGH)
     model = model.on(subset.model.data)
     first_x = fit.x[: fit.model.size]
 

@@ -32,7 +32,8 @@ class Effect:
     that add forces, coefficients, states or events to the base model when they are not off. An effect
     without any is one that the base model's mechanics can do. ``contains``: effects that are special cases
     of this one. ``systems``: those that have the part which it acts on. ``excludes``: effects that cannot be
-    in one model with it. ``of_loops``: a diagnosis looks for it in loops; beside other tests only
+    in one model with it. ``acts_on``: effects whose force it changes; in a model without other friction it
+    shows beside them only. ``of_loops``: a diagnosis looks for it in loops; beside other tests only
     where it is asked to.
     ``meaning`` may hold names of PARTS in braces; see ``described``.
     """
@@ -46,6 +47,7 @@ class Effect:
     contains: tuple[str, ...] = ()
     systems: tuple[str, ...] = SYSTEMS
     excludes: tuple[str, ...] = ()
+    acts_on: tuple[str, ...] = ()
     of_loops: bool = False
 
     def described(self, system: str = SUSPENSION) -> str:

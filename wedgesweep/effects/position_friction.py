@@ -20,6 +20,7 @@ EFFECT = Effect(
     of_loops=True,
     excludes=("series_compliance",),
     meaning="friction that varies along the stroke",
+    acts_on=("guide_friction",),
     quantities=(
         Quantity("share", 0.0, "amplitude over the mean", minimum=0.0, maximum=1.0, search=(0.0, 0.9)),
         Quantity("share_phase_deg", 0.0, "phase at x = 0", search=(-180.0, 180.0)),

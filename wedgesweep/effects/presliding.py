@@ -24,6 +24,7 @@ EFFECT = Effect(
     family="friction-law",
     branch=NUMERICAL,
     meaning="elastic creep of the {face} before it slips (Dahl)",
+    acts_on=("guide_friction",),
     quantities=(
         Quantity(
             "length_mm",

@@ -1,5 +1,6 @@
 """First numbers of a mass on a spring, by what a linear law explains of its records."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import inf, pi
 
@@ -20,12 +21,14 @@ LINES = 1e-3
 UNSEEN = 1e-3
 # Correlation from which acceleration and place are one motion at one frequency.
 ALIKE = 0.99
-# Share of the largest velocity beyond which friction has its sign.
-MOVING = 0.1
+# Share of the largest velocity beyond which friction has its sign, and of a stroke after which it is built up
+# where a joint is elastic.
+MOVING, BUILT_UP = 0.1, 0.25
 # Part of a free motion at its end that shows where it rests, and how much finer than a line spectra are read.
 TAIL, PADDED = 0.1, 8
-# What a motion leaves as relative over what it leaves as absolute, below which it is relative. Random motion
-# has 0.17 if it is, and 4 if it is not; absolute motion at one frequency of a frame that rubs on a wall 0.7.
+# What one explanation leaves over what another one does, below which it is clearly better. A motion as relative,
+# over the same as absolute: random motion has 0.17 if it is relative, and 4 if it is not; absolute motion at one
+# frequency of a frame that rubs on a wall 0.7.
 CLEARLY = 0.5
 # Tests that are looked at.
 TESTS = 6
@@ -73,23 +76,43 @@ def _frequency(test: TestRecord) -> float:
 
 
 def _under_force(tests: tuple[TestRecord, ...]) -> Numbers:
-    """Parts of a force by acceleration, velocity, place and the sign of velocity times a stated load."""
-    blocks, forces = [], []
+    """Parts of a force by acceleration, velocity, place and the sign of velocity times a stated load.
+
+    Joints are elastic before they slip: after a reversal friction builds up over some of the stroke, which
+    passes for damping. What is later in each stroke counts alone if a linear law explains it clearly better.
+    """
     loads = [test.model.get(NORMAL_FORCE, 0.0) for test in tests]
     loaded = min(loads) > 0.0
+    scaled = loads if loaded else [1.0] * len(loads)
+    found, left, force, inertia = _explained(tests, scaled, 0.0)
+    later = _explained(tests, scaled, BUILT_UP)
+    if later[1] < CLEARLY * left:
+        found, _, force, inertia = later
+    mass, damping, spring, friction = found.tolist()
+    unseen = ("mass",) if mass == 0.0 else ()
+    seen = mass or UNSEEN * force / inertia
+    return Numbers(seen, spring, damping, friction, unseen, loads[0] if loaded else 0.0)
+
+
+def _explained(
+    tests: Sequence[TestRecord], loads: Sequence[float], built_up: float
+) -> tuple[np.ndarray, float, float, float]:
+    """Factors (4,) that explain a force best, the share of it that they leave, its size, and acceleration's.
+
+    ``built_up``: share of each stroke that does not count.
+    """
+    blocks, forces = [], []
     for test, load in zip(tests, loads, strict=True):
-        parts, force = _parts(test)
-        parts[:, -1] *= load if loaded else 1.0
+        parts, force = _parts(test, built_up)
+        parts[:, -1] *= load
         blocks.append(parts - parts.mean(axis=0))
         forces.append(force - force.mean())
     design, force = np.vstack(blocks), np.concatenate(forces)
     size = np.maximum(design.std(axis=0), 1e-300)
     found = _not_negative(design / size, force) / size
+    left = float(np.std(force - design @ found) / force.std())
     found[found * size < LEAST * force.std()] = 0.0
-    mass, damping, spring, friction = found.tolist()
-    unseen = ("mass",) if mass == 0.0 else ()
-    seen = mass or UNSEEN * float(force.std()) / size[0]
-    return Numbers(seen, spring, damping, friction, unseen, loads[0] if loaded else 0.0)
+    return found, left, float(force.std()), float(size[0])
 
 
 def _not_negative(design: np.ndarray, force: np.ndarray) -> np.ndarray:
@@ -106,7 +129,7 @@ def _not_negative(design: np.ndarray, force: np.ndarray) -> np.ndarray:
     return min(fits, key=lambda fit: fit[0])[1]
 
 
-def _parts(test: TestRecord) -> tuple[np.ndarray, np.ndarray]:
+def _parts(test: TestRecord, built_up: float) -> tuple[np.ndarray, np.ndarray]:
     """Acceleration, velocity, place (or 0) and direction of a test, (n, 4), and its force (n,)."""
     rate = test.sampling_rate
     force = test.force if test.force is not None else test.input
@@ -127,8 +150,18 @@ def _parts(test: TestRecord) -> tuple[np.ndarray, np.ndarray]:
         velocity, place = (_integral(test.acceleration, rate, order) for order in (1, 2))
     direction = np.sign(velocity)
     parts = np.column_stack([acceleration, velocity, place, low_pass(direction)])[ends]
-    moving = np.abs(velocity[ends]) > MOVING * np.abs(velocity).max()
-    return parts[moving], low_pass(force)[ends][moving]
+    rubbing = np.abs(velocity) > MOVING * np.abs(velocity).max()
+    rubbing &= _share_of_stroke(velocity) >= built_up
+    return parts[rubbing[ends]], low_pass(force)[ends][rubbing[ends]]
+
+
+def _share_of_stroke(velocity: np.ndarray) -> np.ndarray:
+    """Share of its stroke, from reversal to reversal, that each sample of a velocity (n,) has behind it."""
+    path = np.cumsum(np.abs(velocity))
+    reversals = np.flatnonzero(np.diff(np.sign(velocity)))
+    edges = np.r_[0.0, path[reversals], path[-1]]
+    stroke = np.searchsorted(reversals, np.arange(velocity.size))
+    return (path - edges[stroke]) / np.maximum(np.diff(edges), 1e-300)[stroke]
 
 
 def _low_pass(test: TestRecord) -> LowPass:
