@@ -26,8 +26,8 @@ ALIKE = 0.99
 MOVING, BUILT_UP = 0.1, 0.25
 # Part of a free motion at its end that shows where it rests, and how much finer than a line spectra are read.
 TAIL, PADDED = 0.1, 8
-# What one explanation leaves over what another one does, below which it is clearly better. A motion as relative,
-# over the same as absolute: random motion has 0.17 if it is relative, and 4 if it is not; absolute motion at one
+# What one explanation leaves over what another one does, below which it is clearly better. As relative
+# motion over absolute, random motion has 0.17 if it is relative, and 4 if it is not; absolute motion at one
 # frequency of a frame that rubs on a wall 0.7.
 CLEARLY = 0.5
 # Tests that are looked at.
