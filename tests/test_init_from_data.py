@@ -111,6 +111,15 @@ def test_an_elastic_joint_does_not_stand_for_a_damper(tmp_path):
     assert own["spring"] == pytest.approx(5e3, rel=0.03)
 
 
+def test_a_jerk_before_a_long_creep_is_no_obstacle(tmp_path):
+    t = np.arange(4000) / RATE
+    noise = np.random.default_rng(0).normal(size=(2, t.size))
+    away = np.exp(-t / 0.05)
+    columns = t, 10.0 * (1.0 - away) + 3.0 * t + 1e-3 * noise[0], 20.0 * away + 0.1 * noise[1]
+    found = begun(tmp_path, text(tmp_path / "jerk.csv", *columns, header="s,mm,N"))
+    assert found.model.oscillator["damping"] >= 0.0
+
+
 def test_the_load_of_two_faces_belongs_to_the_model_of_each_test(tmp_path):
     files, random = [], np.random.default_rng(1)
     for load in (20.0, 60.0):

@@ -110,7 +110,7 @@ def _explained(
     design, force = np.vstack(blocks), np.concatenate(forces)
     size = np.maximum(design.std(axis=0), 1e-300)
     found = _not_negative(design / size, force) / size
-    left = float(np.std(force - design @ found) / force.std())
+    left = float(np.std(force - design @ found) / max(force.std(), 1e-300))
     found[found * size < LEAST * force.std()] = 0.0
     return found, left, float(force.std()), float(size[0])
 
@@ -151,8 +151,9 @@ def _parts(test: TestRecord, built_up: float) -> tuple[np.ndarray, np.ndarray]:
     direction = np.sign(velocity)
     parts = np.column_stack([acceleration, velocity, place, low_pass(direction)])[ends]
     rubbing = np.abs(velocity) > MOVING * np.abs(velocity).max()
-    rubbing &= _share_of_stroke(velocity) >= built_up
-    return parts[rubbing[ends]], low_pass(force)[ends][rubbing[ends]]
+    later = rubbing & (_share_of_stroke(velocity) >= built_up)
+    used = (later if later[ends].any() else rubbing)[ends]
+    return parts[used], low_pass(force)[ends][used]
 
 
 def _share_of_stroke(velocity: np.ndarray) -> np.ndarray:
