@@ -150,9 +150,10 @@ def _parts(test: TestRecord, built_up: float) -> tuple[np.ndarray, np.ndarray]:
         velocity, place = (_integral(test.acceleration, rate, order) for order in (1, 2))
     direction = np.sign(velocity)
     parts = np.column_stack([acceleration, velocity, place, low_pass(direction)])[ends]
-    rubbing = np.abs(velocity) > MOVING * np.abs(velocity).max()
-    later = rubbing & (_share_of_stroke(velocity) >= built_up)
-    used = (later if later[ends].any() else rubbing)[ends]
+    speed = np.abs(parts[:, 1])
+    rubbing = speed >= MOVING * speed.max()
+    later = rubbing & (_share_of_stroke(velocity)[ends] >= built_up)
+    used = later if later.any() else rubbing
     return parts[used], low_pass(force)[ends][used]
 
 
