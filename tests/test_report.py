@@ -247,7 +247,7 @@ def test_sentence(verdict):
                     **{"base": 0.47, "next_best": 0.26, "held_out": 0.016},
                 }
             },
-            "explains all tests (without it: 47 %; next best: 26 %; held-out tests: 1.6 %), though no",
+            "explains all tests (without: 47 %; next best: 26 %; held-out tests: 1.6 %), though no",
         ),
         (
             "data-insufficient",

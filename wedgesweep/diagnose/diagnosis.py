@@ -271,20 +271,20 @@ def _held_out(course: Course) -> Diagnosis:
 
 
 def _rated(course: Course) -> Diagnosis:
-    """The diagnosis with the refined ladder, and with the effect that is by far the most accurate, if any."""
+    """The diagnosis with the refined ladder, and with what is by far the most accurate, if anything is."""
     found, search = course.found, course.search
     levels = ladder(search, found.base, found.explanations, course.predict)
     found, before = replace(found, ladder=levels), found.decided
     found = replace(found, decided=verdict.by_accuracy(before, levels))
-    return found if found.decided is before else _with_leading_effect(search, found, course.predict)
+    return found if found.decided is before else _with_leading_one(search, found, course.predict)
 
 
-def _with_leading_effect(search: Search, found: Diagnosis, predict: Predictor) -> Diagnosis:
-    """The diagnosis with numbers, intervals and gain of the effect that is by far the most accurate.
+def _with_leading_one(search: Search, found: Diagnosis, predict: Predictor) -> Diagnosis:
+    """The diagnosis with numbers, intervals and gain of the explanation that is by far the most accurate.
 
     It is fitted with the weights of its accuracy: those of noise alone would make the intervals too narrow.
     """
-    rated = found.ladder[1].best
+    rated = next(level.best for level in found.ladder if level.best.explanation is found.decided.best)
     strict = rated.explanation.fit.model.data
     data = strict.with_model_error(rated.accuracy)
     fit = minimise(rated.fit.model.on(data), data.compared_again(rated.fit.evaluation))

@@ -17,7 +17,7 @@ from wedgesweep.effects import confounded, parts
 from wedgesweep.uncertain import uncertain_numbers
 
 if TYPE_CHECKING:
-    from wedgesweep.diagnose.ladder import Level
+    from wedgesweep.diagnose.ladder import Level, Rated
 
 NOTHING, NAMED, CONSISTENT, TIED, INSUFFICIENT, NONE = VERDICTS
 # Explanations whose penalised misfits differ by less than this cannot be distinguished.
@@ -37,11 +37,12 @@ LARGER = 2.0
 UNCERTAIN = 3.0
 # Measured power over that of noise, below which noise is as large as the response.
 LEAST_POWER = 2.0
-# Where nothing reaches the noise: factor by which an effect must be more accurate than all others to be a
-# cause, and the most that it may leave of the response. In 27 sets whose truth was no candidate the most
-# accurate single effect led the next one by at most 1.9; right ones lead by 2.7 to 80. The factor is the
-# geometric mean of 1.9 and 2.7.
-CLEAR, MOST_LEFT = 2.3, 0.2
+# Where nothing reaches the noise: factor by which an explanation must be more accurate than all others to
+# be a cause, the most that it may leave of the response, and effects that it may have. In 27 sets whose
+# truth was no candidate the most accurate single effect led the next one by at most 1.9, and the most
+# accurate pair by 1.3; right single effects lead by 2.7 to 80. The factor is the geometric mean of 1.9 and
+# 2.7.
+CLEAR, MOST_LEFT, MOST_NAMED = 2.3, 0.2, 2
 
 
 @dataclass(frozen=True)
@@ -366,30 +367,41 @@ def as_far_as_done(finding: Finding, searched: bool, confirmed: bool) -> Finding
 
 
 def by_accuracy(finding: Finding, levels: "Sequence[Level]") -> Finding:
-    """The finding where no explanation reaches the noise, but one effect is by far the most accurate.
+    """The finding where no explanation reaches the noise, but one is by far the most accurate of its size.
 
-    It must be more accurate than the base model and every other effect by the factor CLEAR, and beat the base
-    model on held-out tests by that factor as well. No pair without it may be more accurate, and none with it
-    by that factor.
+    It has one effect, or two where no single one leads. It must be more accurate than the base model and all
+    others with as many effects, or fewer, by the factor CLEAR, and beat the base model on held-out tests by
+    that factor as well. No larger one without it may be more accurate, and none with it by that factor.
     """
-    base, *higher = levels
-    if finding.verdict != NONE or not higher:
+    if finding.verdict != NONE:
         return finding
-    single, size = higher[0].best, higher[0].best.accuracy
-    next_best = min((each.accuracy for each in higher[0].rivals), default=inf)
-    pairs = [each for level in higher[1:] for each in level.rated]
-    # A base model that has no response predicts nothing.
-    predicted, before = (inf if each.held_out is None else each.held_out for each in (single, base.best))
-    leads = CLEAR * size <= min(base.best.accuracy, next_best, CLEAR * MOST_LEFT)
-    without = [
-        each.accuracy if single.effects[0] not in each.effects else CLEAR * each.accuracy for each in pairs
-    ]
-    leads = leads and size <= min(without, default=inf)
+    base = levels[0].best
+    for size in range(1, min(len(levels), MOST_NAMED + 1)):
+        best, smaller = levels[size].best, [level.best for level in levels[1:size]]
+        next_best = min((each.accuracy for each in (*levels[size].rivals, *smaller)), default=inf)
+        larger = [each for level in levels[size + 1 :] for each in level.rated]
+        if _leads(best, base, next_best, larger):
+            numbers: dict[str, Any] = {"accuracy": best.accuracy, "base": base.accuracy}
+            numbers |= {"next_best": next_best, "held_out": best.held_out}
+            return Finding(CONSISTENT, Reason.MORE_ACCURATE, best.explanation, (), numbers)
+    return finding
+
+
+def _leads(best: "Rated", base: "Rated", next_best: float, larger: "Sequence[Rated]") -> bool:
+    """Whether an explanation is by far more accurate than all others with as many effects, or fewer."""
     # One that reaches the noise over all tests was refused for what it leaves in some of them.
-    if not (leads and size > 0.0 and predicted < inf and CLEAR * predicted <= before):
-        return finding
-    numbers = {"accuracy": size, "base": base.best.accuracy, "next_best": next_best, "held_out": predicted}
-    return Finding(CONSISTENT, Reason.MORE_ACCURATE, single.explanation, (), numbers)
+    if best.accuracy == 0.0 or confounded(best.effects):
+        return False
+    effects = set(best.effects)
+    beyond = [each.accuracy * (CLEAR if effects <= set(each.effects) else 1.0) for each in larger]
+    # A base model that has no response predicts nothing.
+    predicted, before = (inf if each.held_out is None else each.held_out for each in (best, base))
+    return (
+        CLEAR * best.accuracy <= min(base.accuracy, next_best, CLEAR * MOST_LEFT)
+        and best.accuracy <= min(beyond, default=inf)
+        and predicted < inf
+        and CLEAR * predicted <= before
+    )
 
 
 def _unexplained(base: Explanation, best: Explanation | None) -> Finding:
