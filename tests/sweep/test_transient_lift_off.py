@@ -21,6 +21,7 @@ SWEPT = (
 def study(given, joints, *, scale=1.0, method="event-driven", restitution=0.0):
     text = f'[suspension]\njoints = "{joints}"\n[input]\n{given}'
     text += f'[sweep]\nfriction_law = {LAWS}\nscale = {scale}\n[solver]\nmethod = "{method}"\nrtol = 1e-9\n'
+    text += "case_timeout_s = 600.0\n"  # only to end a hang, also on a busy machine
     if restitution:
         text = text.replace("[input]", f"restitution = {restitution}\n[input]")
     return text

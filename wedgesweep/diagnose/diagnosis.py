@@ -364,7 +364,7 @@ def excluded_effects(measurement: Measurement) -> dict[str, str]:
         and len({measurement.model_of(test).oscillator["normal_force"] for test in measurement.tests}) > 1
     )
     contained = [name for name in acting(model.effects) if name not in SCALES]
-    return model.excluded_effects(differ) | dict.fromkeys(contained, IN_BASE)
+    return model.excluded_effects(differ, measurement.kinds == (LOOP,)) | dict.fromkeys(contained, IN_BASE)
 
 
 def refit_cause(
