@@ -142,9 +142,10 @@ class Config:
         if rubs and not loads_differ:
             yield (oscillator.LATERAL,), "is friction_level where the normal force is the same in all tests"
         if not rubs:
-            # In loops some show beside lateral friction; to simulate them in runs would take too long.
-            acting = oscillator.OF_NORMAL if loops else (*oscillator.OF_NORMAL, *oscillator.OF_ALL_FRICTION)
-            yield acting, "changes friction, and the model has none"
+            # Some show beside friction that may be missing. In runs their simulation would take too long.
+            beside = [name for name in oscillator.OF_FRICTION if loops and EFFECTS[name].acts_on]
+            alone = [name for name in oscillator.OF_FRICTION if name not in beside]
+            yield alone, "changes friction, and the model has none"
         if not (rubs and loads_differ):
             yield (oscillator.OF_LOAD,), "shows only where the normal force differs from test to test"
         if self.oscillator["spring"] == 0.0:

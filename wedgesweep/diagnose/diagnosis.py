@@ -276,10 +276,10 @@ def _rated(course: Course) -> Diagnosis:
     levels = ladder(search, found.base, found.explanations, course.predict)
     found, before = replace(found, ladder=levels), found.decided
     found = replace(found, decided=verdict.by_accuracy(before, levels))
-    return found if found.decided is before else _with_leading_one(search, found, course.predict)
+    return found if found.decided is before else _with_leading_explanation(search, found, course.predict)
 
 
-def _with_leading_one(search: Search, found: Diagnosis, predict: Predictor) -> Diagnosis:
+def _with_leading_explanation(search: Search, found: Diagnosis, predict: Predictor) -> Diagnosis:
     """The diagnosis with numbers, intervals and gain of the explanation that is by far the most accurate.
 
     It is fitted with the weights of its accuracy: those of noise alone would make the intervals too narrow.

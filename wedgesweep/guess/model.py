@@ -1,8 +1,9 @@
 """First numbers of a mass on a spring, by what a linear law explains of its records."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import inf, pi
+from typing import NamedTuple
 
 import numpy as np
 from scipy.optimize import nnls
@@ -22,7 +23,7 @@ UNSEEN = 1e-3
 # Correlation from which acceleration and place are one motion at one frequency.
 ALIKE = 0.99
 # Share of the largest velocity beyond which friction has its sign, and of a stroke after which it is built up
-# where a joint is elastic.
+# where a joint is elastic (a convention).
 MOVING, BUILT_UP = 0.1, 0.25
 # Part of a free motion at its end that shows where it rests, and how much finer than a line spectra are read.
 TAIL, PADDED = 0.1, 8
@@ -75,44 +76,49 @@ def _frequency(test: TestRecord) -> float:
     return (slowest + int(power[slowest:].argmax())) / (PADDED * test.duration)
 
 
+class _Moving(NamedTuple):
+    """Samples of a test in which its mass moves.
+
+    ``parts`` (n, 4): acceleration, velocity, place (or 0) and direction; ``force`` (n,); ``share`` (n,): of
+    the stroke that is done.
+    """
+
+    parts: np.ndarray
+    force: np.ndarray
+    share: np.ndarray
+
+    def later(self) -> "_Moving":
+        """Those of them in which friction is built up; all of them if it never is."""
+        built_up = self.share >= BUILT_UP
+        return _Moving(*(each[built_up] for each in self)) if built_up.any() else self
+
+
 def _under_force(tests: tuple[TestRecord, ...]) -> Numbers:
-    """Parts of a force by acceleration, velocity, place and the sign of velocity times a stated load.
+    """Numbers by parts of a force, among them the sign of velocity times a stated load.
 
     Joints are elastic before they slip: after a reversal friction builds up over some of the stroke, which
-    passes for damping. What is later in each stroke counts alone if a linear law explains it clearly better.
+    looks like damping. What comes later in a stroke counts alone if a linear law explains it clearly better.
     """
     loads = [test.model.get(NORMAL_FORCE, 0.0) for test in tests]
     loaded = min(loads) > 0.0
-    scaled = loads if loaded else [1.0] * len(loads)
-    found, left, force, inertia = _explained(tests, scaled, 0.0)
-    later = _explained(tests, scaled, BUILT_UP)
-    if later[1] < CLEARLY * left:
-        found, _, force, inertia = later
+    moving = [_moving(test, load if loaded else 1.0) for test, load in zip(tests, loads, strict=True)]
+    left, found = _explained(moving)
+    left_later, later = _explained([each.later() for each in moving])
+    best = later if left_later < CLEARLY * left else found
+    return replace(best, load=loads[0] if loaded else 0.0)
+
+
+def _explained(tests: Sequence[_Moving]) -> tuple[float, Numbers]:
+    """Share of the force that a linear law leaves, and the numbers of that law."""
+    design = np.vstack([each.parts - each.parts.mean(axis=0) for each in tests])
+    force = np.concatenate([each.force - each.force.mean() for each in tests])
+    size, scatter = np.maximum(design.std(axis=0), 1e-300), float(force.std())
+    found = _not_negative(design / size, force) / size
+    left = float(np.std(force - design @ found)) / max(scatter, 1e-300)
+    found[found * size < LEAST * scatter] = 0.0
     mass, damping, spring, friction = found.tolist()
     unseen = ("mass",) if mass == 0.0 else ()
-    seen = mass or UNSEEN * force / inertia
-    return Numbers(seen, spring, damping, friction, unseen, loads[0] if loaded else 0.0)
-
-
-def _explained(
-    tests: Sequence[TestRecord], loads: Sequence[float], built_up: float
-) -> tuple[np.ndarray, float, float, float]:
-    """Factors (4,) that explain a force best, the share of it that they leave, its size, and acceleration's.
-
-    ``built_up``: share of each stroke that does not count.
-    """
-    blocks, forces = [], []
-    for test, load in zip(tests, loads, strict=True):
-        parts, force = _parts(test, built_up)
-        parts[:, -1] *= load
-        blocks.append(parts - parts.mean(axis=0))
-        forces.append(force - force.mean())
-    design, force = np.vstack(blocks), np.concatenate(forces)
-    size = np.maximum(design.std(axis=0), 1e-300)
-    found = _not_negative(design / size, force) / size
-    left = float(np.std(force - design @ found) / max(force.std(), 1e-300))
-    found[found * size < LEAST * force.std()] = 0.0
-    return found, left, float(force.std()), float(size[0])
+    return left, Numbers(mass or UNSEEN * scatter / float(size[0]), spring, damping, friction, unseen)
 
 
 def _not_negative(design: np.ndarray, force: np.ndarray) -> np.ndarray:
@@ -129,8 +135,8 @@ def _not_negative(design: np.ndarray, force: np.ndarray) -> np.ndarray:
     return min(fits, key=lambda fit: fit[0])[1]
 
 
-def _parts(test: TestRecord, built_up: float) -> tuple[np.ndarray, np.ndarray]:
-    """Acceleration, velocity, place (or 0) and direction of a test, (n, 4), and its force (n,)."""
+def _moving(test: TestRecord, load: float) -> _Moving:
+    """The samples of a test in which friction has its sign, which is multiplied by a load."""
     rate = test.sampling_rate
     force = test.force if test.force is not None else test.input
     assert force is not None
@@ -148,13 +154,11 @@ def _parts(test: TestRecord, built_up: float) -> tuple[np.ndarray, np.ndarray]:
         assert test.acceleration is not None
         acceleration = low_pass(test.acceleration)
         velocity, place = (_integral(test.acceleration, rate, order) for order in (1, 2))
-    direction = np.sign(velocity)
-    parts = np.column_stack([acceleration, velocity, place, low_pass(direction)])[ends]
-    speed = np.abs(parts[:, 1])
-    rubbing = speed >= MOVING * speed.max()
-    later = rubbing & (_share_of_stroke(velocity)[ends] >= built_up)
-    used = later if later.any() else rubbing
-    return parts[used], low_pass(force)[ends][used]
+    direction = load * low_pass(np.sign(velocity))
+    parts = np.column_stack([acceleration, velocity, place, direction])
+    every = _Moving(*(each[ends] for each in (parts, low_pass(force), _share_of_stroke(velocity))))
+    speed = np.abs(every.parts[:, 1])
+    return _Moving(*(each[speed >= MOVING * speed.max()] for each in every))
 
 
 def _share_of_stroke(velocity: np.ndarray) -> np.ndarray:

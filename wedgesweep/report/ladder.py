@@ -133,7 +133,7 @@ def _numbers_of_records(one: Mapping[str, Any]) -> str:
 
 def _clause(level: Mapping[str, Any], base: Mapping[str, Any], document: Mapping[str, Any]) -> str:
     meanings = phrases.meanings(level["effects"], document)
-    verb = "explains" if len(level["effects"]) == 1 else "explain"
+    verb = phrases.explain(level["effects"])
     beside = [f"without: {phrases.accuracy(base['accuracy'])}"]
     if predicted := held_out(level):
         beside.insert(0, predicted)

@@ -133,6 +133,11 @@ def combination(effects: Sequence[str]) -> str:
     return " + ".join(effects) or "base model"
 
 
+def explain(effects: Sequence[Any]) -> str:
+    """What these effects do with tests: the verb."""
+    return "explains" if len(effects) == 1 else "explain"
+
+
 def accuracy(size: float | None) -> str:
     """A relative model error as a share of the response; 0 is noise alone."""
     if size is None:

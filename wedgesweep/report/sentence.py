@@ -98,7 +98,7 @@ def _most_accurate(result: DiagnosisResult) -> str:
     why = result.document.get("reason", {})
     size, base, held_out = (phrases.accuracy(why[key]) for key in ("accuracy", "base", "held_out"))
     rivals = f"next best: {phrases.accuracy(why['next_best'])}; held-out tests: {held_out}"
-    explain = "explains" if len(result.document["causes"]) == 1 else "explain"
+    explain = phrases.explain(result.document["causes"])
     return (
         f"To {size} of the response {_causes(result)} {explain} all tests (without: {base}; {rivals}), "
         f"though no explanation reaches the noise: {_improvement(result)}."

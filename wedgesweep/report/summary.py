@@ -19,9 +19,9 @@ def lead(result: DiagnosisResult) -> str:
             return f"Missing or wrong in the model: {causes}."
         case "consistent-with" if result.reason is Reason.MORE_ACCURATE:
             left = phrases.accuracy(result.document["reason"]["accuracy"])
-            return (
-                f"Probably missing or wrong in the model: {causes}; with it {left} of the response is left."
-            )
+            them = "it" if len(result.document["causes"]) == 1 else "them"
+            cause = f"Probably missing or wrong in the model: {causes}"
+            return f"{cause}; with {them} {left} of the response is left."
         case "consistent-with":
             return f"Probably missing or wrong in the model: {causes}; the evidence is weak."
         case "tied":

@@ -61,11 +61,11 @@ OF_BASE = "stray_vibration"
 OF_SPRING = ("bolster_stiffness", "asymmetric_spring", "backlash")
 # Friction beside that of the normal force, and effects on the latter.
 LATERAL = "guide_friction"
-# The first one scales the coefficients of the normal force, the others change the law; the last ones act on
-# lateral friction, too.
-OF_NORMAL = ("friction_level", "stribeck", "ageing", "directional_friction")
-OF_ALL_FRICTION = ("presliding", "position_friction")
-OF_LAW_OF_FRICTION = (*OF_NORMAL[1:], *OF_ALL_FRICTION)
+# The first one scales its coefficients, the others change the law.
+OF_FRICTION = (
+    *("friction_level", "stribeck", "presliding", "ageing", "directional_friction"),
+    "position_friction",
+)
 # Those that need a rod between the mass and what damps it, and those of them behind which all damping is.
 OF_ROD = ("damper_play", "series_compliance")
 WITH_DAMPING = "series_compliance"
@@ -214,7 +214,7 @@ def friction_decay(p: np.void) -> float:
 
 def _changes_friction(p: np.void) -> bool:
     """Whether an effect or bristles change the law of friction."""
-    return bool(records.acting(p, (*OF_LAW_OF_FRICTION, *OF_ROD))) or bool(p[bristles.NAME]["stiffness"])
+    return bool(records.acting(p, (*OF_FRICTION[1:], *OF_ROD))) or bool(p[bristles.NAME]["stiffness"])
 
 
 def _breakaway_force(p: np.void) -> float:
