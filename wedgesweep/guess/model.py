@@ -18,13 +18,13 @@ from wedgesweep.measured.kinds import HIGHEST
 HARMONICS, NOISY, LEAST = (12.0, 8.0, 5.0, 3.0, 2.0), 0.05, 0.01
 # Lines of a spectrum that count, by their power over that of the highest one.
 LINES = 1e-3
-# Force of inertia over all force for a mass that no record shows.
-UNSEEN = 1e-3
+# Force of inertia over all force for a mass that no record shows: far below what a force is measured to.
+UNSEEN = 1e-6
 # Correlation from which acceleration and place are one motion at one frequency.
 ALIKE = 0.99
-# Share of the largest velocity beyond which friction has its sign, and of a stroke after which it is built up
-# where a joint is elastic (a convention).
-MOVING, BUILT_UP = 0.1, 0.25
+# Share of the largest velocity beyond which friction has its sign, and shares of a stroke after which it may
+# be built up where a joint is elastic (a convention).
+MOVING, BUILT_UP = 0.1, (0.25, 0.5)
 # Part of a free motion at its end that shows where it rests, and how much finer than a line spectra are read.
 TAIL, PADDED = 0.1, 8
 # What one explanation leaves over what another one does, below which it is clearly better. As relative
@@ -87,9 +87,9 @@ class _Moving(NamedTuple):
     force: np.ndarray
     share: np.ndarray
 
-    def later(self) -> "_Moving":
-        """Those of them in which friction is built up; all of them if it never is."""
-        built_up = self.share >= BUILT_UP
+    def after(self, share: float) -> "_Moving":
+        """Those of them that have a share of their stroke behind them; all of them if none has."""
+        built_up = self.share >= share
         return _Moving(*(each[built_up] for each in self)) if built_up.any() else self
 
 
@@ -97,14 +97,16 @@ def _under_force(tests: tuple[TestRecord, ...]) -> Numbers:
     """Numbers by parts of a force, among them the sign of velocity times a stated load.
 
     Joints are elastic before they slip: after a reversal friction builds up over some of the stroke, which
-    looks like damping. What comes later in a stroke counts alone if a linear law explains it clearly better.
+    looks like damping. What comes later in a stroke counts alone if a linear law explains it clearly better;
+    of two such parts that with less damping, as effects can add a damper but take none away.
     """
     loads = [test.model.get(NORMAL_FORCE, 0.0) for test in tests]
     loaded = min(loads) > 0.0
     moving = [_moving(test, load if loaded else 1.0) for test, load in zip(tests, loads, strict=True)]
     left, found = _explained(moving)
-    left_later, later = _explained([each.later() for each in moving])
-    best = later if left_later < CLEARLY * left else found
+    later = [_explained([each.after(share) for each in moving]) for share in BUILT_UP]
+    clearer = [numbers for left_later, numbers in later if left_later < CLEARLY * left]
+    best = min(clearer, key=lambda each: each.damping, default=found)
     return replace(best, load=loads[0] if loaded else 0.0)
 
 
