@@ -1,6 +1,7 @@
 """Tests run as the command does, and share one cache of compiled code, which stays in the checkout."""
 
 import fcntl
+import gc
 import os
 from contextlib import suppress
 from hashlib import sha256
@@ -84,3 +85,9 @@ def pytest_collection_modifyitems(items):
         for place, item in enumerate(some):
             if place not in chosen:
                 item.add_marker("acceptance")
+
+
+def pytest_collection_finish():
+    """Let the collector of garbage pass over what was imported, which it would look through in every test."""
+    gc.collect()
+    gc.freeze()

@@ -111,28 +111,28 @@ bolster_spring_N_per_mm = 2.36518
 wedge_spring_N_per_mm = 1.44404
 wedge_angle_deg = 35.369
 column_angle_deg = 4.6825
-[effects.load_dependent_friction]
-exponent = 0.0914367
 [sweep]
 friction_law = "coulomb"
 beta = 1.0
 amplitude_mm = 0.1
 """
+BY_LOAD = "[effects.load_dependent_friction]\nexponent = 0.0914367\n"
 
 
 @pytest.mark.parametrize(
-    ("plan", "message"),
+    ("plan", "effects", "message"),
     [
         pytest.param(
             SWEEP.replace("4.0", "60.0"),
+            BY_LOAD,
             "test[0] (transient): normal forces not unique at t = ",
             marks=pytest.mark.acceptance,
         ),
-        (LOOP.replace("10.0", "60.0"), "test[0] (loop): no force drives the mass in "),
+        (LOOP.replace("10.0", "60.0"), "", "test[0] (loop): no force drives the mass in "),
     ],
 )
-def test_a_test_in_which_a_wedge_locks_is_refused(tmp_path, plan, message):
-    (tmp_path / "rig.toml").write_text(LOCKS)
+def test_a_test_in_which_a_wedge_locks_is_refused(tmp_path, plan, effects, message):
+    (tmp_path / "rig.toml").write_text(LOCKS + effects)
     (tmp_path / "tests.toml").write_text(plan)
     out = tmp_path / "data"
     paths = (tmp_path / "rig.toml", "--tests", tmp_path / "tests.toml", "-o", out)

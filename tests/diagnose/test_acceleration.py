@@ -52,7 +52,7 @@ def test_a_cause_is_named_from_an_accelerometer_on_a_mass_that_is_released(tmp_p
         # An accelerometer that does not stand upright shows a share of gravity.
         tables.append([np.arange(a.size) / rate, a + 0.3 + noise * rng.standard_normal(a.size)])
     path = write(tmp_path, rig, tables, CHANNEL.format(""))
-    found = api.diagnose_measurement(read(path), effects=CANDIDATES, n_jobs=2)
+    found = api.diagnose_measurement(read(path), effects=CANDIDATES, n_jobs=1)
     assert [each["effect"] for each in found.causes] == list(effects)
     (numbers,) = (each["parameters"] for each in found.causes)
     (estimate,), (true,) = numbers.values(), next(iter(effects.values())).values()
@@ -100,7 +100,7 @@ def test_the_acceleration_against_the_ground_under_a_sweep(tmp_path, name):
     columns = CHANNEL.format(', of = "absolute"')
     columns += 'input = { column = "u", unit = "m/s^2", quantity = "acceleration" }\n'
     found = api.diagnose_measurement(
-        read(write(tmp_path, rig, [table], columns)), effects=CANDIDATES, n_jobs=2
+        read(write(tmp_path, rig, [table], columns)), effects=CANDIDATES, n_jobs=1
     )
     assert [each["effect"] for each in found.causes] == list(effects)
 

@@ -75,11 +75,12 @@ def write(
 
 
 def diagnosed(path, effects):
-    return api.diagnose_measurement(read(path), effects=effects, n_jobs=2)
+    return api.diagnose_measurement(read(path), effects=effects, n_jobs=1)
 
 
 HIDDEN = {"viscous_damping": {"coefficient": 4.0}}
 CANDIDATES = ["viscous_damping", "friction_level", "cubic_stiffness"]
+SOFT = {"bolster_stiffness": {"scale": 0.9}}
 INPUTS = {
     "sweep": lambda: [4e-3 * chirp()],
     "random": lambda: [2e-3 * rough(3)],
@@ -87,8 +88,14 @@ INPUTS = {
 }
 
 
-@pytest.mark.few(1)
-@pytest.mark.parametrize("kind", INPUTS)
+def test_a_cause_without_mechanics_of_its_own_is_named_under_a_swept_sine(tmp_path):
+    found = diagnosed(write(tmp_path, INPUTS["sweep"](), SOFT), [*SOFT, "friction_level"])
+    assert (found.verdict, [each["effect"] for each in found.causes]) == ("named", [*SOFT])
+    assert found.causes[0]["parameters"]["scale"]["value"] == pytest.approx(0.9, rel=1e-3)
+
+
+@pytest.mark.acceptance
+@pytest.mark.parametrize("kind", ["random", "bumps"])
 def test_a_cause_is_named_under_a_recorded_motion(tmp_path, kind):
     found = diagnosed(write(tmp_path, INPUTS[kind](), HIDDEN), CANDIDATES)
     assert (found.verdict, [each["effect"] for each in found.causes]) == ("named", ["viscous_damping"])
@@ -207,6 +214,7 @@ def test_bristles_that_were_at_work_before_a_window_are_simulated_from_there(tmp
     assert (fit.evaluation.chi2_by_test < 1.3 * search.data.dof).all()
 
 
+@pytest.mark.acceptance
 def test_a_mass_that_stuck_before_a_window_has_stuck_for_as_long_in_its_simulation(tmp_path):
     """Static friction has grown since the record began: it decides when the mass breaks away."""
     ageing = {"ageing": {"rate": 0.1, "time": 0.02}}

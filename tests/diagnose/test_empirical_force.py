@@ -115,7 +115,7 @@ def bump(x, v):
 @pytest.mark.acceptance
 def test_force_without_a_name_is_drawn_and_runs(tmp_path):
     measurement = hidden_in_loops(tmp_path, bump)
-    found = api.diagnose_measurement(measurement, effects=CANDIDATES, n_jobs=2)
+    found = api.diagnose_measurement(measurement, effects=CANDIDATES, n_jobs=1)
     force = found.document["empirical_force"]
     assert found.verdict == "none-of-mine"
     assert found.causes == []
@@ -138,6 +138,6 @@ def test_force_without_a_name_is_drawn_and_runs(tmp_path):
 def test_nothing_is_drawn_where_a_name_explains_the_tests(tmp_path, stiffening):
     measurement = hidden_in_loops(tmp_path, lambda x, v: stiffening * x**3)
     asked = [*CANDIDATES, "empirical_force"]
-    found = api.diagnose_measurement(measurement, effects=asked, n_jobs=2)
+    found = api.diagnose_measurement(measurement, effects=asked, n_jobs=1)
     assert json.loads(found.to_json())["empirical_force"]["offered"] is False
     assert "missing_force" not in found.data

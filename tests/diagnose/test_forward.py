@@ -26,6 +26,7 @@ def levels_after(hidden, pair):
     return before, forward_selection(search, singles, before, predict)
 
 
+@pytest.mark.acceptance
 def test_the_third_of_three_effects_is_added_and_no_fourth():
     before, after = levels_after(THREE, ("velocity_lag", "bolster_mass"))
     assert [len(level.best.effects) for level in after] == [0, 1, 2, 3]

@@ -106,7 +106,7 @@ def write(
 
 
 def diagnosed(path, effects=None):
-    return api.diagnose_measurement(read(path), effects=effects, n_jobs=2)
+    return api.diagnose_measurement(read(path), effects=effects, n_jobs=1)
 
 
 def test_noise_of_a_filter_and_of_derivatives():
@@ -201,7 +201,7 @@ def test_an_effect_of_a_few_times_the_noise_is_found(tmp_path, effect):
     fit = base_fit(Search.of(data, [])).base.fit
     left = float(np.sqrt((fit.evaluation.residual**2).sum() / data.weight.sum()))
     assert left < 7.0  # of the noise
-    found = api.diagnose_measurement(measurement, effects=("preload", "bolster_stiffness", *WEAK), n_jobs=2)
+    found = api.diagnose_measurement(measurement, effects=("preload", "bolster_stiffness", *WEAK), n_jobs=1)
     assert found.verdict in ("named", "consistent-with")
     assert [cause["effect"] for cause in found.causes] == [effect]
     (estimate,) = found.causes[0]["parameters"].values()
@@ -216,7 +216,7 @@ def test_bristles_are_found_whether_they_turn_over_within_a_sample_or_slowly(tmp
     # Around a reversal the motion goes 2e-7 m in a sample. Nobody knows how the bristles begin.
     effects, motions = {"presliding": {"length": length}}, ((2e-4, 1.5, 10.0),)
     path = write(tmp_path, WEDGE, effects, motions, (1e-9, 0.003), deflected=-0.9)
-    found = api.diagnose_measurement(read(path), effects=("presliding", "friction_level"), n_jobs=2)
+    found = api.diagnose_measurement(read(path), effects=("presliding", "friction_level"), n_jobs=1)
     assert found.verdict == "named"
     assert [cause["effect"] for cause in found.causes] == ["presliding"]
     assert found.causes[0]["parameters"]["length_mm"]["value"] == pytest.approx(1e3 * length, rel=0.02)

@@ -104,8 +104,8 @@ def test_a_rig_that_drops_its_mass_is_asked_to_drop_it(tmp_path):
 
 def test_a_distance_is_the_excess_that_a_fit_would_leave(tmp_path):
     """Of numbers that are known, where start and zero are not."""
-    data, more = dropped(tmp_path), {"viscous_damping": {"coefficient_N_s_per_m": 2.05}}
-    fits = [explained(data, each, std=1e-9) for each in (DAMPED, more)]
+    data, more = dropped(tmp_path), {"friction_level": {"scale": 1.605}}
+    fits = [explained(data, each, std=1e-9) for each in (RUBBED, more)]
     for make in (releases, sweeps):
         design = make(fits[0], data.sensors())
         own = design.data.subset(np.array([3]))

@@ -24,7 +24,7 @@ LAW = "static-dynamic"
 # Half the resonance, and above it; more acceleration than friction can take.
 FREQUENCIES, AMPLITUDES = np.array([6.8, 6.8, 11.0, 20.0]), 1e-3 * np.array([1.2, 1.7, 0.3, 0.12])
 SECOND, PHASE = 0.01, 0.7
-CAUSE = {"viscous_damping": {"coefficient": 3.0}}
+CAUSE = {"guide_friction": {"force": 0.3}}
 NOISE = 0.02
 DISPLACEMENT = {"displacement": {"column": "d", "unit": "m"}}
 
@@ -188,19 +188,24 @@ def test_noise_of_the_input_is_no_harmonic_where_friction_nearly_holds():
     assert np.mean(ratios) == pytest.approx(1.0, abs=0.1)
 
 
-def test_the_cause_is_named_and_the_distortion_is_not_blamed():
-    found = diagnose(
-        measurement(1, CAUSE), ("viscous_damping", "input_distortion", "stribeck", "bolster_mass")
-    )
+@pytest.mark.parametrize(
+    "rivals",
+    [
+        ("friction_level", "bolster_mass"),
+        pytest.param(("input_distortion", "stribeck"), marks=pytest.mark.acceptance),
+    ],
+)
+def test_the_cause_is_named_and_the_distortion_is_not_blamed(rivals):
+    found = diagnose(measurement(1, CAUSE), ("guide_friction", *rivals))
     assert found.finding.verdict in ("named", "consistent-with")
-    assert found.finding.best.effects == ("viscous_damping",)
-    value = found.finding.best.fit.values["viscous_damping"]["coefficient_N_s_per_m"]
-    assert value == pytest.approx(3.0, rel=0.1)
+    assert found.finding.best.effects == ("guide_friction",)
+    value = found.finding.best.fit.values["guide_friction"]["force_N"]
+    assert value == pytest.approx(0.3, rel=0.1)
 
 
 @pytest.mark.acceptance
 def test_without_a_cause_nothing_is_missing_though_the_input_is_distorted():
-    found = diagnose(measurement(2), ("viscous_damping", "input_distortion", "stribeck"))
+    found = diagnose(measurement(2), ("guide_friction", "input_distortion", "stribeck"))
     assert found.finding.verdict == "nothing-missing"
 
 
@@ -245,7 +250,7 @@ def test_one_gain_of_the_input_serves_all_tests(of):
     true = measurement(3, CAUSE, columns, noise=0.005)
     tests = tuple(replace(each, input=each.input / 1.03) for each in true.tests)
     wrong, uncertain = (replace(true, tests=tests, input_gain_std=std) for std in (0.0, 0.05))
-    known = config.parse(MODEL + "[effects.viscous_damping]\ncoefficient_N_s_per_m = 3.0\n")
+    known = config.parse(MODEL + "[effects.guide_friction]\nforce_N = 0.3\n")
     blamed, fit = (base_of(harmonic_data(replace(each, model=known))) for each in (wrong, uncertain))
     assert blamed.p < 1e-6
     assert fit.p > 0.01
@@ -303,8 +308,8 @@ def test_numbers_of_single_tests_are_part_of_the_model():
     """A heavier bolster in every other test: known, it is not missing, and the same cause is found in all."""
     heavier = [{}, {"suspension.bolster_mass_kg": 0.9}] * 2
     given = measurement(3, CAUSE, numbers=heavier)
-    found = diagnose(given, ("viscous_damping", "bolster_mass"))
-    assert found.finding.best.effects == ("viscous_damping",)
+    found = diagnose(given, ("guide_friction", "bolster_mass"))
+    assert found.finding.best.effects == ("guide_friction",)
     assert found.finding.verdict in ("named", "consistent-with")
     unknown = replace(given, tests=tuple(replace(test, model={}) for test in given.tests))
     scenario = Scenario(CAUSE, found.finding.best.fit.point)

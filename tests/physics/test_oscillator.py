@@ -92,7 +92,7 @@ def test_block_on_a_belt(solver):
     assert -run.sums["highest"][0] == pytest.approx(-0.5554327, abs=1e-7)
 
 
-@pytest.mark.few(1)
+@pytest.mark.acceptance
 @pytest.mark.parametrize("excitation", ["base", "force"])
 @pytest.mark.parametrize("contact", ["base", "ground", "belt"])
 @pytest.mark.parametrize("law", ["coulomb", "static-dynamic", "exponential", "hyperbolic"])

@@ -56,7 +56,7 @@ def test_a_range_without_zero_is_left_before_the_samples_begin_and_after_they_en
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
-@pytest.mark.parametrize("locked_in", [0.0, 0.3])
+@pytest.mark.parametrize("locked_in", [0.0, pytest.param(0.3, marks=pytest.mark.acceptance)])
 def test_a_bolster_breaks_away_when_a_growing_acceleration_reaches_that_of_breakaway(sign, locked_in):
     growth, span, samples = 1.0, 1.0, 200_000
     time = np.arange(2001) * 5e-4

@@ -246,6 +246,7 @@ def test_a_release_with_a_velocity_rings_down():
 
 
 # Suspensions and oscillators, three laws, effects; 12, 20, 24 and 28 of the script would compile for minutes.
+@pytest.mark.acceptance
 def test_bristles_pulled_by_a_spring_end_where_they_are_published_to_end():
     """Exudyn's test example of a LuGre friction oscillator: x and z at 25 s."""
     given = {"kind": "ramp", "velocity_mm_per_s": 100.0, "duration_s": 25.02, "sampling_hz": 50.0}
@@ -266,6 +267,7 @@ def test_bristles_pulled_by_a_spring_end_where_they_are_published_to_end():
     assert z == pytest.approx(1.18167955e-5, rel=1e-6)
 
 
+@pytest.mark.acceptance
 def test_soft_bristles_creep_by_their_stiffness_before_they_slip():
     stiffness = 4e4
     given = {"kind": "ramp", "velocity_mm_per_s": 0.1, "duration_s": 2.0}

@@ -23,6 +23,8 @@ distributed = pytest.importorskip("distributed", reason="Dask is not installed")
 # Long enough that a worker is at work when it is killed.
 LONG = FAST.replace("settle_periods = 3", "settle_periods = 2000")
 FEW = CONFIG.replace("1.1, ", "")
+# An input that does not repeat.
+MOVED = HEAD + SWEPT.replace("duration_s = 4.0", "duration_s = 1.0") + TAIL
 
 
 @pytest.fixture(scope="module")
@@ -82,28 +84,27 @@ def test_a_cluster_that_is_left_while_a_worker_starts(monkeypatch):
         raise KeyboardInterrupt
 
 
-@pytest.mark.few(1)
-@pytest.mark.parametrize("method", ["event-driven", "radau"])
-def test_every_backend_gives_the_same_bits(tmp_path, monkeypatch, method):
+@pytest.mark.parametrize(
+    ("text", "method", "cases"),
+    [
+        (MOVED, "event-driven", 6),
+        pytest.param(FEW, "event-driven", 16, marks=pytest.mark.acceptance),
+        pytest.param(FEW, "radau", 16, marks=pytest.mark.acceptance),
+    ],
+    ids=["moved", "sines", "radau"],
+)
+def test_every_backend_gives_the_same_bits(tmp_path, monkeypatch, text, method, cases):
+    """Samples of an input are no part of the records, which hold their address only."""
     monkeypatch.chdir(tmp_path)
-    (tmp_path / "few.toml").write_text(FEW)
+    (tmp_path / "few.toml").write_text(text)
     for name, n_jobs in (("loky", 2), ("threads", 2), ("dask", 1)):
         command = ("run", "few.toml", "-o", f"{name}.nc", "--solver", method, "--backend", name)
-        assert "16 cases: 16 ok" in invoke(*command, "--n-jobs", n_jobs, code=0)
+        assert f"{cases} cases: {cases} ok" in invoke(*command, "--n-jobs", n_jobs, code=0)
+    loky = xr.load_dataset("loky.nc")
+    assert float(np.abs(loky["displacement"]).max()) > 0.0
     for name in ("threads", "dask"):
-        assert_same_numbers(xr.load_dataset(f"{name}.nc"), xr.load_dataset("loky.nc"))
+        assert_same_numbers(xr.load_dataset(f"{name}.nc"), loky)
     assert {path.name for path in tmp_path.iterdir()} == {"few.toml", "dask.nc", "loky.nc", "threads.nc"}
-
-
-def test_an_input_that_does_not_repeat_goes_to_the_workers(tmp_path, cluster):
-    """Its samples are no part of the records, which hold their address only."""
-    text = HEAD + SWEPT.replace("duration_s = 4.0", "duration_s = 1.0") + TAIL
-    here = small_sweep.sweep(tmp_path, text).run(n_jobs=2)
-    (tmp_path / "small.nc").unlink()
-    there = small_sweep.sweep(tmp_path, text).run(backend=through(cluster))
-    assert (here["status"] == 0).all()
-    assert float(np.abs(here["displacement"]).max()) > 0.0
-    assert_same_numbers(there, here)
 
 
 def test_workers_of_another_version_are_refused(tmp_path, cluster, monkeypatch):
