@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy import signal
 from scipy.integrate import solve_ivp
 from scipy.io import savemat, wavfile
 
@@ -12,6 +13,7 @@ from tests import fixture_formats
 from tests.command import invoke
 from tests.fixture_measured import vibration
 from wedgesweep import measured
+from wedgesweep.diagnose.transient.from_measurement import transient_data
 from wedgesweep.guess import first_files
 from wedgesweep.measured import consistency
 
@@ -94,6 +96,82 @@ def test_numbers_of_the_model_are_those_of_the_record(tmp_path, header):
     assert own["damping"] == pytest.approx(40.0, rel=0.15)
     assert own["spring"] == pytest.approx(0.0, abs=20.0)
     assert "shows about 2" in (tmp_path / "model.toml").read_text()
+
+
+@pytest.mark.parametrize(
+    "above", ["Rig 7\nSample rate: 1000 Hz\n\n", "# Sampling frequency [kHz]; 1.0\n", "dt = 1 ms\n", ""]
+)
+def test_a_number_in_a_text_file_is_its_rate(tmp_path, above):
+    _, d, f = loop()
+    rows = [f"{a:.6f},{b:.6f}" for a, b in zip(d, f, strict=True)]
+    if not above:  # in a column of its own
+        rows = [f"{row},{'1000' if i == 0 else ''}" for i, row in enumerate(rows)]
+    header = "Position (mm),Force (N)" + ("" if above else ",Fs")
+    (tmp_path / "one.csv").write_text(above + "\n".join([header, *rows]) + "\n")
+    assert begun(tmp_path, tmp_path / "one.csv").tests[0].sampling_rate == pytest.approx(1000.0)
+    assert "as a number in the file says" in (tmp_path / "measured.toml").read_text()
+
+
+def test_an_acceleration_under_a_force_tells_mass_spring_and_damper(tmp_path):
+    mass, spring, damping = 2.0, 3200.0, 8.0
+    t = np.arange(0.0, 20.0, 0.0025)
+    force = 5.0 * np.sin(2.0 * np.pi * (2.0 * t + 0.2 * t**2))
+    system = signal.TransferFunction([1.0, 0.0, 0.0], [mass, damping, spring])
+    _, acceleration, _ = signal.lsim(system, force, t)
+    noise = 0.01 * np.random.default_rng(0).normal(size=(2, t.size))
+    columns = t, force + noise[0], acceleration + noise[1]
+    own = begun(
+        tmp_path, text(tmp_path / "a.csv", *columns, header="s,Force (N),Acc (m/s^2)")
+    ).model.oscillator
+    assert own["mass"] == pytest.approx(mass, rel=0.03)
+    assert own["spring"] == pytest.approx(spring, rel=0.03)
+    assert own["damping"] == pytest.approx(damping, rel=0.1)
+
+
+def pendulum(driven, seed=0):
+    """Time (s), angle (rad) and torque (N m) of a pendulum (0.0125 kg m^2, 0.6 N m), driven or let go."""
+    t = np.arange(0.0, 12.0, 0.005)
+
+    def torque(t):
+        return 0.4 * np.sin(2.0 * np.pi * 0.5 * t) if driven else 0.0 * t
+
+    def rate(t, y):
+        return y[1], (torque(t) - 0.6 * np.sin(y[0]) - 0.02 * np.tanh(y[1] / 0.005)) / 0.0125
+
+    start = (0.0, 0.0) if driven else (1.2, 0.0)
+    angle = solve_ivp(rate, (0.0, t[-1]), start, method="LSODA", t_eval=t, rtol=1e-7, max_step=0.01).y[0]
+    noise = np.random.default_rng(seed).normal(size=(2, t.size))
+    return t, angle + 2e-4 * noise[0], torque(t) + 0.002 * noise[1]
+
+
+def test_what_swings_is_a_pendulum(tmp_path):
+    for name, driven in ("driven", True), ("free", False):
+        (tmp_path / name).mkdir()
+        t, angle, torque = pendulum(driven)
+        columns, header = (t, angle, torque), "t (s),theta (rad),torque (N m)"
+        if not driven:
+            columns, header = columns[:2], header.rpartition(",")[0]
+        own = begun(tmp_path / name, text(tmp_path / f"{name}.csv", *columns, header=header)).model.oscillator
+        assert own["restoring_force"] == "pendulum"
+        assert own["spring"] / own["mass"] == pytest.approx(0.6 / 0.0125, rel=0.03)
+    columns, header = (t, angle, 0.6 * angle), "t (s),theta (rad),torque (N m)"
+    begun(tmp_path, text(tmp_path / "spring.csv", *columns, header=header))
+    assert "restoring_force" not in (tmp_path / "model.toml").read_text()
+
+
+def test_what_coasts_to_rest_has_no_spring(tmp_path):
+    t = np.arange(0.0, 5.0, 0.02)
+    slowing = 0.9 - 0.3 * t  # m/s: it is pushed, and friction stops it after 3 s
+    x = np.where(slowing > 0.0, 0.9 * t - 0.15 * t**2, 1.35) + 3e-4 * np.random.default_rng(0).normal(
+        size=t.size
+    )
+    found = begun(tmp_path, text(tmp_path / "cart.csv", t, x, header="Time (s),Position (m)"))
+    assert found.model.oscillator["spring"] == 0.0
+    assert transient_data(found).tests == 1  # nothing cuts what has no period
+    t, x = decay()
+    (tmp_path / "swings").mkdir()
+    found = begun(tmp_path / "swings", text(tmp_path / "swings.csv", t, x, header="s,mm"))
+    assert found.model.oscillator["spring"] == pytest.approx((2.0 * np.pi * 4.0) ** 2, rel=0.05)
 
 
 def test_an_elastic_joint_does_not_stand_for_a_damper(tmp_path):

@@ -434,7 +434,7 @@ def rated(accuracy, *effects, held_out=None):
         ((0.47, 0.70), (0.004, 0.016), 0.26, 0.003, 0.003, "none-of-mine"),
         ((0.47, 0.70), (0.004, 0.4), 0.26, 0.008, 0.003, "none-of-mine"),
         ((0.47, 0.70), (0.004, None), 0.26, 0.008, 0.003, "none-of-mine"),
-        ((0.47, 0.70), (0.004, 0.016), 0.26, 0.008, 0.001, "none-of-mine"),
+        ((0.47, 0.70), (0.004, 0.016), 0.26, 0.008, 0.001, "consistent-with"),
         ((0.009, 0.70), (0.004, 0.016), 0.26, 0.008, 0.003, "none-of-mine"),
         ((2.0, 2.0), (0.3, 0.3), 1.0, 0.8, 0.003, "none-of-mine"),
         ((0.011, 0.02), (0.0, 0.0), 0.0, 0.0, 0.0, "none-of-mine"),
@@ -443,7 +443,7 @@ def rated(accuracy, *effects, held_out=None):
 def test_one_effect_that_is_far_more_accurate_than_all_others_is_the_cause(
     base, best, rival, pair, with_it, expected
 ):
-    """Though none reaches the noise; not if a pair does better, or held-out tests disagree."""
+    """Though none reaches the noise; not if a pair without it does better, or held-out tests disagree."""
     unexplained = verdict_of(explained(5000.0), explained(1500.0, "ageing"))
     single = rated(best[0], "ageing", held_out=best[1])
     levels = (
@@ -456,6 +456,8 @@ def test_one_effect_that_is_far_more_accurate_than_all_others_is_the_cause(
     if expected == "consistent-with":
         assert (found.reason, found.cause) == (Reason.MORE_ACCURATE, single.explanation)
         assert found.numbers["next_best"] == rival
+        # One that holds the cause and leaves much less may have its numbers.
+        assert [each["accuracy"] for each in found.numbers["larger"]] == [0.001] * (with_it == 0.001)
     named = verdict_of(explained(5000.0), explained(705.0, "stribeck"))
     assert verdict.by_accuracy(named, levels) is named
 
@@ -466,7 +468,7 @@ def test_one_effect_that_is_far_more_accurate_than_all_others_is_the_cause(
         (0.18, 0.007, 0.038, 0.005, "consistent-with"),
         (0.18, 0.007, 0.015, 0.005, "none-of-mine"),
         (0.012, 0.007, 0.038, 0.005, "none-of-mine"),
-        (0.18, 0.007, 0.038, 0.003, "none-of-mine"),
+        (0.18, 0.007, 0.038, 0.003, "consistent-with"),
     ],
 )
 def test_two_effects_that_are_far_more_accurate_than_all_others_are_the_cause(

@@ -73,7 +73,8 @@ def thresholds_for(data: FitData, given: Thresholds = DEFAULT) -> Thresholds:
 class Finding:
     """A verdict with its reason, the best explanation and its adequate rivals.
 
-    ``numbers``: of the reason, by the keys of diagnosis.json.
+    ``numbers``: of the reason, by the keys of diagnosis.json. ``larger``: fits of explanations that hold the
+    best one and leave much less, so that its numbers may be theirs.
     """
 
     verdict: str
@@ -81,6 +82,7 @@ class Finding:
     best: Explanation | None = None
     rivals: tuple[Explanation, ...] = ()
     numbers: Mapping[str, Any] = field(default_factory=dict)
+    larger: tuple[Fit, ...] = ()
 
     @property
     def cause(self) -> Explanation | None:
@@ -371,37 +373,58 @@ def by_accuracy(finding: Finding, levels: "Sequence[Level]") -> Finding:
 
     It has one effect, or two where no single one leads. It must be more accurate than the base model and all
     others with as many effects, or fewer, by the factor CLEAR, and beat the base model on held-out tests by
-    that factor as well. No larger one without it may be more accurate, and none with it by that factor.
+    that factor as well. No larger one without it may be more accurate. One with it may be by that factor if
+    nothing else leads: then it is a part of what is missing, and its numbers are as uncertain as the rest.
     """
     if finding.verdict != NONE:
         return finding
-    base = levels[0].best
-    for size in range(1, min(len(levels), MOST_NAMED + 1)):
-        best, smaller = levels[size].best, [level.best for level in levels[1:size]]
-        next_best = min((each.accuracy for each in (*levels[size].rivals, *smaller)), default=inf)
-        larger = [each for level in levels[size + 1 :] for each in level.rated]
-        if _leads(best, base, next_best, larger):
-            numbers: dict[str, Any] = {"accuracy": best.accuracy, "base": base.accuracy}
-            numbers |= {"next_best": next_best, "held_out": best.held_out}
-            return Finding(CONSISTENT, Reason.MORE_ACCURATE, best.explanation, (), numbers)
+    sizes = [size for size in range(1, min(len(levels), MOST_NAMED + 1)) if _leads(levels, size)]
+    for whole in (True, False):
+        for size in sizes:
+            best, larger = levels[size].best, _surpassing(levels, size)
+            if (whole and larger) or any(not set(best.effects) <= set(each.effects) for each in larger):
+                continue
+            least = min((each.accuracy for each in larger), default=0.0)
+            leading = [each for each in larger if each.accuracy <= CLEAR * least]
+            numbers = _accuracies(levels, size)
+            numbers["larger"] = [{"effects": [*each.effects], "accuracy": each.accuracy} for each in leading]
+            fits = tuple(each.fit for each in leading)
+            return Finding(CONSISTENT, Reason.MORE_ACCURATE, best.explanation, (), numbers, fits)
     return finding
 
 
-def _leads(best: "Rated", base: "Rated", next_best: float, larger: "Sequence[Rated]") -> bool:
-    """Whether an explanation is by far more accurate than all others with as many effects, or fewer."""
+def _accuracies(levels: "Sequence[Level]", size: int) -> dict[str, Any]:
+    """Accuracy of the best explanation of some size, of the base model, and of the next best one."""
+    best, smaller = levels[size].best, [level.best for level in levels[1:size]]
+    next_best = min((each.accuracy for each in (*levels[size].rivals, *smaller)), default=inf)
+    base = levels[0].best.accuracy
+    return {"accuracy": best.accuracy, "base": base, "next_best": next_best, "held_out": best.held_out}
+
+
+def _leads(levels: "Sequence[Level]", size: int) -> bool:
+    """Whether one explanation is by far more accurate than all others with as many effects, or fewer."""
+    best, base, found = levels[size].best, levels[0].best, _accuracies(levels, size)
     # One that reaches the noise over all tests was refused for what it leaves in some of them.
     if best.accuracy == 0.0 or confounded(best.effects):
         return False
-    effects = set(best.effects)
-    beyond = [each.accuracy * (CLEAR if effects <= set(each.effects) else 1.0) for each in larger]
     # A base model that has no response predicts nothing.
     predicted, before = (inf if each.held_out is None else each.held_out for each in (best, base))
     return (
-        CLEAR * best.accuracy <= min(base.accuracy, next_best, CLEAR * MOST_LEFT)
-        and best.accuracy <= min(beyond, default=inf)
+        CLEAR * best.accuracy <= min(found["base"], found["next_best"], CLEAR * MOST_LEFT)
         and predicted < inf
         and CLEAR * predicted <= before
     )
+
+
+def _surpassing(levels: "Sequence[Level]", size: int) -> "list[Rated]":
+    """Larger explanations that are more accurate than the best one of some size, by CLEAR if they hold it."""
+    best = levels[size].best
+    return [
+        each
+        for level in levels[size + 1 :]
+        for each in level.rated
+        if each.accuracy * (CLEAR if set(best.effects) <= set(each.effects) else 1.0) < best.accuracy
+    ]
 
 
 def _unexplained(base: Explanation, best: Explanation | None) -> Finding:

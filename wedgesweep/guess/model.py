@@ -1,8 +1,8 @@
 """First numbers of a mass on a spring, by what a linear law explains of its records."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from math import inf, pi
+from math import pi
 from typing import NamedTuple
 
 import numpy as np
@@ -36,13 +36,16 @@ TESTS = 6
 # The number of a test's model that its load is.
 NORMAL_FORCE = "oscillator.normal_force_N"
 
+# A restoring force over its factor, of places (n,).
+Restoring = Callable[[np.ndarray], np.ndarray]
+
 
 @dataclass(frozen=True)
 class Numbers:
     """SI numbers of an oscillator; ``friction`` is what dry friction takes beside them.
 
     It is a force (N) or, where each test states its load, a coefficient; ``load`` (N) is the first one then.
-    ``unseen``: numbers that do not come from the records.
+    ``unseen``: numbers that do not come from the records; ``swings``: as a pendulum does, with k sin(x).
     """
 
     mass: float
@@ -51,24 +54,60 @@ class Numbers:
     friction: float = 0.0
     unseen: tuple[str, ...] = ()
     load: float = 0.0
+    swings: bool = False
 
 
 def numbers(measurement: Measurement) -> Numbers:
     """Mass, spring and damper that explain the records best; a free motion tells their ratio only."""
     tests = measurement.tests[:TESTS]
-    if all(test.force is not None or measurement.recorded_input == "force" for test in tests):
-        return _under_force(tests)
-    if all(test.input is not None for test in tests) and measurement.recorded_input is not None:
+    forced = all(test.force is not None or measurement.recorded_input == "force" for test in tests)
+    if (
+        not forced
+        and all(test.input is not None for test in tests)
+        and measurement.recorded_input is not None
+    ):
         return _on_base(tests, measurement)
-    frequency = float(np.median([_frequency(test) for test in tests]))
-    omega = 2.0 * pi * frequency
-    return Numbers(1.0, omega**2, 0.0, unseen=("mass", "damping"))
+    law = _under_force if forced else _free
+    left, found = law(tests, _spring)
+    if measurement.model.turns and all(test.displacement is not None for test in tests):
+        left_by_pendulum, pendulum = law(tests, np.sin)
+        if left_by_pendulum < CLEARLY * left:
+            return replace(pendulum, swings=True)
+    return found
+
+
+def _spring(place: np.ndarray) -> np.ndarray:
+    return place
+
+
+def _free(tests: Sequence[TestRecord], restoring: Restoring) -> tuple[float, Numbers]:
+    """Share of the acceleration that is left without a force, and the spring over the mass.
+
+    A spring shows best in the frequency, which friction and noise hardly move.
+    """
+    moving = [_moving(test, 1.0, restoring) for test in tests]
+    acceleration, velocity, place, direction = np.vstack([each.parts for each in moving]).T
+    left, spring = _fitted([place, velocity, direction], -acceleration)
+    if all(np.ptp(np.sign(each.parts[:, 1])) == 0.0 for each in moving):  # it never turns back: is there any?
+        if _fitted([velocity, direction], -acceleration)[0] * CLEARLY < left:
+            spring = 0.0
+    elif restoring is _spring:
+        spring = (2.0 * pi * float(np.median([_frequency(test) for test in tests]))) ** 2
+    return left, Numbers(1.0, spring, 0.0, unseen=("mass", "damping"))
+
+
+def _fitted(parts: Sequence[np.ndarray], force: np.ndarray) -> tuple[float, float]:
+    """Share of a force (n,) that parts times factors >= 0 leave, and the factor of the first part."""
+    design = np.column_stack(parts)
+    size = np.maximum(np.linalg.norm(design, axis=0), 1e-300)
+    factors, left = nnls(design / size, force)
+    return float(left / max(np.linalg.norm(force), 1e-300)), float(factors[0] / size[0])
 
 
 def _frequency(test: TestRecord) -> float:
     """Frequency (Hz) of a motion: at which it has most of its power, about where it ends."""
     signal = next(iter(test.responses.values()))
-    about = signal - np.median(signal[-max(int(TAIL * signal.size), 1) :])
+    about = signal - _end(signal)
     if test.force is not None or test.input is not None:
         about = signal - signal.mean()
     power = np.abs(np.fft.rfft(about, PADDED * signal.size))
@@ -76,11 +115,16 @@ def _frequency(test: TestRecord) -> float:
     return (slowest + int(power[slowest:].argmax())) / (PADDED * test.duration)
 
 
+def _end(signal: np.ndarray) -> float:
+    """Where a free motion (n,) ends."""
+    return float(np.median(signal[-max(int(TAIL * signal.size), 1) :]))
+
+
 class _Moving(NamedTuple):
     """Samples of a test in which its mass moves.
 
-    ``parts`` (n, 4): acceleration, velocity, place (or 0) and direction; ``force`` (n,); ``share`` (n,): of
-    the stroke that is done.
+    ``parts`` (n, 4): acceleration, velocity, restoring force over its factor (or 0) and direction; ``force``
+    (n,); ``share`` (n,): of the stroke that is done.
     """
 
     parts: np.ndarray
@@ -93,8 +137,8 @@ class _Moving(NamedTuple):
         return _Moving(*(each[built_up] for each in self)) if built_up.any() else self
 
 
-def _under_force(tests: tuple[TestRecord, ...]) -> Numbers:
-    """Numbers by parts of a force, among them the sign of velocity times a stated load.
+def _under_force(tests: Sequence[TestRecord], restoring: Restoring) -> tuple[float, Numbers]:
+    """Share of the force that is left, and numbers by its parts: one is velocity's sign times a stated load.
 
     Joints are elastic before they slip: after a reversal friction builds up over some of the stroke, which
     looks like damping. What comes later in a stroke counts alone if a linear law explains it clearly better;
@@ -102,12 +146,14 @@ def _under_force(tests: tuple[TestRecord, ...]) -> Numbers:
     """
     loads = [test.model.get(NORMAL_FORCE, 0.0) for test in tests]
     loaded = min(loads) > 0.0
-    moving = [_moving(test, load if loaded else 1.0) for test, load in zip(tests, loads, strict=True)]
-    left, found = _explained(moving)
+    moving = [
+        _moving(test, load if loaded else 1.0, restoring) for test, load in zip(tests, loads, strict=True)
+    ]
+    all_of_it = _explained(moving)
     later = [_explained([each.after(share) for each in moving]) for share in BUILT_UP]
-    clearer = [numbers for left_later, numbers in later if left_later < CLEARLY * left]
-    best = min(clearer, key=lambda each: each.damping, default=found)
-    return replace(best, load=loads[0] if loaded else 0.0)
+    clearer = [each for each in later if each[0] < CLEARLY * all_of_it[0]]
+    left, found = min(clearer, key=lambda each: each[1].damping, default=all_of_it)
+    return left, replace(found, load=loads[0] if loaded else 0.0)
 
 
 def _explained(tests: Sequence[_Moving]) -> tuple[float, Numbers]:
@@ -137,17 +183,22 @@ def _not_negative(design: np.ndarray, force: np.ndarray) -> np.ndarray:
     return min(fits, key=lambda fit: fit[0])[1]
 
 
-def _moving(test: TestRecord, load: float) -> _Moving:
-    """The samples of a test in which friction has its sign, which is multiplied by a load."""
+def _moving(test: TestRecord, load: float, restoring: Restoring) -> _Moving:
+    """The samples of a test in which friction has its sign, which is multiplied by a load.
+
+    A free motion is about where it ends, and its force is 0.
+    """
     rate = test.sampling_rate
     force = test.force if test.force is not None else test.input
-    assert force is not None
+    free = force is None
+    if force is None:
+        force = np.zeros(next(iter(test.responses.values())).size)
     low_pass = _low_pass(test)
     ends = slice(low_pass.settling, -low_pass.settling)
     if 3 * low_pass.settling > force.size:
         ends = slice(None)
     if test.displacement is not None:
-        place = low_pass(test.displacement)
+        place = low_pass(test.displacement - (_end(test.displacement) if free else 0.0))
         velocity, acceleration = (derivative(place, rate, order) for order in (1, 2))
     elif test.velocity is not None:
         place, velocity = np.zeros(force.size), low_pass(test.velocity)
@@ -157,7 +208,7 @@ def _moving(test: TestRecord, load: float) -> _Moving:
         acceleration = low_pass(test.acceleration)
         velocity, place = (_integral(test.acceleration, rate, order) for order in (1, 2))
     direction = load * low_pass(np.sign(velocity))
-    parts = np.column_stack([acceleration, velocity, place, direction])
+    parts = np.column_stack([acceleration, velocity, restoring(place), direction])
     every = _Moving(*(each[ends] for each in (parts, low_pass(force), _share_of_stroke(velocity))))
     speed = np.abs(every.parts[:, 1])
     return _Moving(*(each[speed >= MOVING * speed.max()] for each in every))
@@ -194,7 +245,7 @@ def _integral(acceleration: np.ndarray, rate: float, order: int) -> np.ndarray:
     omega = _frequencies(acceleration, rate)
     power = np.abs(line) ** 2
     line[power < LINES * power.max()] = 0.0
-    omega[0] = inf
+    omega[0] = 1.0  # where there is no power
     return np.fft.irfft(line / (1j * omega) ** order, acceleration.size)
 
 

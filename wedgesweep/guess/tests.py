@@ -1,5 +1,6 @@
 """Which files and runs are tests, and which files hold channels of the others."""
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -13,7 +14,8 @@ from wedgesweep.readers.survey import Survey
 from wedgesweep.units import UNITS
 
 # Names of single numbers that are a sampling rate (Hz), and of those that are a sampling interval (s).
-RATES, INTERVALS = ("fs", "rate", "samplerate", "samplingrate", "fsamp", "sr"), ("dt", "ts", "interval")
+RATES = ("fs", "rate", "samplerate", "samplingrate", "samplefrequency", "samplingfrequency", "fsamp", "sr")
+INTERVALS = ("dt", "ts", "interval", "sampleinterval", "samplinginterval", "timestep")
 # Rate (Hz) where nothing tells it.
 UNKNOWN_RATE = 1000.0
 
@@ -61,7 +63,7 @@ def _without_load(run: Run) -> Run:
 def _rate(survey: Survey) -> float | None:
     """Sampling rate (Hz) by the single numbers of a file."""
     for name, value in survey.numbers.items():
-        bare = name.lower().replace("_", "").rpartition(".")[2]
+        bare = re.sub(r"[\W_]", "", name.lower().rpartition(".")[2])
         if value > 0.0 and bare in (*RATES, *INTERVALS):
             return value if bare in RATES else 1.0 / value
     return None

@@ -26,6 +26,13 @@ FEWEST_ROWS = 8
 WIDEST = 64
 # Cells of a header of words between spaces: a unit in brackets belongs to the word before it.
 WORDS = re.compile(r"[^\s\[(]+(?:\s*[\[(][^\])]*[\])])?")
+# A line that names a number, with its unit before or behind it; its greatest length; and factors of units.
+PLAIN = re.compile(r"[+-]?\d+\.?\d*(?:[eE][+-]?\d+)?")
+NAMED_NUMBER = re.compile(
+    r"\W*(?P<name>[A-Za-z][\w .]*?)\s*(?:[\[(](?P<before>[^\])]*)[\])])?\s*[:=,;\t]+\s*"
+    rf"(?P<number>{PLAIN.pattern})\s*[\[(]?(?P<behind>[A-Za-z]*)[\])]?[\s,;]*"
+)
+LONGEST, FACTORS = 200, {"kHz": 1e3, "ms": 1e-3, "us": 1e-6}
 
 
 class Everything(Wanted):
@@ -129,7 +136,7 @@ def _of_text(path: Path) -> Survey:
             Column(name, labels[number], table.channels[number])
             for number, name in zip(numbers, names, strict=True)
         )
-        return Survey(path, tuple(columns), {}, stated)
+        return Survey(path, tuple(columns), _single_numbers(lines, how, numbers), stated)
     raise ReadError([faults[0] if faults[0].startswith(str(path)) else f"{path}: {faults[0]}"])
 
 
@@ -167,6 +174,21 @@ def _numbers(lines: Sequence[str], delimiter: str) -> tuple[list[int], int]:
 def _is_data(row: Sequence[str]) -> bool:
     cells = [cell for cell in row if cell not in csv_dialect.MISSING]
     return len(cells) > 0 and 2 * sum(map(csv_dialect.is_number, cells)) > len(cells)
+
+
+def _single_numbers(lines: Sequence[str], how: Dialect, columns: Sequence[int]) -> dict[str, float]:
+    """Numbers by name: of lines above the columns, and those that stand under a name in the first row."""
+    found = {}
+    for line in lines[: how.first]:
+        if len(line) <= LONGEST and (pair := NAMED_NUMBER.fullmatch(line)):
+            unit = pair["before"] or pair["behind"]
+            found[pair["name"]] = float(pair["number"]) * FACTORS.get(unit, 1.0)
+    first = csv_dialect.split(lines[how.first], how.delimiter)
+    others = [number for number in range(1, how.width + 1) if number not in columns]
+    for number, words in _labels(lines[: how.first], how.delimiter, how.width, others).items():
+        if words and number <= len(first) and PLAIN.fullmatch(first[number - 1]):
+            found[words[-1]] = float(first[number - 1])
+    return found
 
 
 def _labels(

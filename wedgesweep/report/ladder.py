@@ -88,7 +88,10 @@ def clauses(result: DiagnosisResult) -> list[str]:
 
 
 def noteworthy(result: DiagnosisResult) -> list[Mapping[str, Any]]:
-    """The level of the best single effect, and that of the best pair where it is much better."""
+    """The level of the best single effect, and that of the best pair where it is much better.
+
+    What leaves as much as there is of the response explains nothing.
+    """
     levels = levels_of(result)
     if not levels:
         return []
@@ -96,10 +99,11 @@ def noteworthy(result: DiagnosisResult) -> list[Mapping[str, Any]]:
     found: list[Mapping[str, Any]] = []
     reached = base["accuracy"]
     for level in better:
-        if level["accuracy"] is None or (found and level["accuracy"] * MUCH_BETTER > (reached or 0.0)):
+        left = level["accuracy"]
+        if left is None or left >= 1.0 or (found and left * MUCH_BETTER > (reached or 0.0)):
             continue
         found.append(level)
-        reached = level["accuracy"]
+        reached = left
     return found
 
 

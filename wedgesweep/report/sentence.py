@@ -99,10 +99,23 @@ def _most_accurate(result: DiagnosisResult) -> str:
     size, base, held_out = (phrases.accuracy(why[key]) for key in ("accuracy", "base", "held_out"))
     rivals = f"next best: {phrases.accuracy(why['next_best'])}; held-out tests: {held_out}"
     explain = phrases.explain(result.document["causes"])
-    return (
-        f"To {size} of the response {_causes(result)} {explain} all tests (without: {base}; {rivals}), "
-        f"though no explanation reaches the noise: {_improvement(result)}."
-    )
+    found = f"To {size} of the response {_causes(result)} {explain} all tests (without: {base}; {rivals})"
+    noise = "" if why.get("larger") else ", though no explanation reaches the noise"
+    return f"{found}{noise}: {_improvement(result)}.{_larger(result)}"
+
+
+def _larger(result: DiagnosisResult) -> str:
+    """What else may be missing, where another effect beside the cause leaves much less."""
+    causes = {each["effect"] for each in result.document["causes"]}
+    others = [
+        f"{phrases.combination([name for name in each['effects'] if name not in causes])} "
+        f"({phrases.accuracy(each['accuracy'])})"
+        for each in result.document["reason"].get("larger", [])
+    ]
+    if not others:
+        return ""
+    less = f"More is missing: another effect beside {'it' if len(causes) == 1 else 'them'} leaves much less"
+    return f" {less}, {phrases.listing(others, 'or')}; the interval holds the value that each leads to."
 
 
 def _reservation(result: DiagnosisResult) -> str:

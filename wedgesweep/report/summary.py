@@ -18,10 +18,13 @@ def lead(result: DiagnosisResult) -> str:
         case "named":
             return f"Missing or wrong in the model: {causes}."
         case "consistent-with" if result.reason is Reason.MORE_ACCURATE:
-            left = phrases.accuracy(result.document["reason"]["accuracy"])
+            why = result.document["reason"]
             them = "it" if len(result.document["causes"]) == 1 else "them"
-            cause = f"Probably missing or wrong in the model: {causes}"
-            return f"{cause}; with {them} {left} of the response is left."
+            left = f"with {them} {phrases.accuracy(why['accuracy'])} of the response is left"
+            if larger := why.get("larger"):
+                least = min(each["accuracy"] for each in larger)
+                left += f", and with another effect {phrases.accuracy(least)}"
+            return f"Probably missing or wrong in the model: {causes}; {left}."
         case "consistent-with":
             return f"Probably missing or wrong in the model: {causes}; the evidence is weak."
         case "tied":

@@ -75,6 +75,7 @@ def _window(known: Sensors, start: float, duration: float) -> RecordWindow:
         begins=0.0,
         number=0,
         channels=np.zeros((len(known.spectra), count)),
+        rms=known.rms,
         spectra=known.spectra,
         passed_on=np.zeros((len(known.spectra), 2)),
         coefficients=min(max(ceil(highest * count / pi), FEWEST_COMPARED), count),
@@ -108,4 +109,4 @@ def _filled(known: Sensors, own: RecordWindow, response: np.ndarray) -> RecordWi
     spectra = tuple(beside_signal(*each) for each in zip(own.spectra, rms, known.rms, strict=True))
     # A recorded input has noise as well: as large a share as the response has.
     passed_on = np.array([each.std**2 for each in spectra])[:, None] * np.full((1, 2), float(own.driven))
-    return replace(own, channels=channels, spectra=spectra, passed_on=passed_on)
+    return replace(own, channels=channels, rms=rms, spectra=spectra, passed_on=passed_on)

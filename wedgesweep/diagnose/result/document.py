@@ -19,8 +19,8 @@ from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.next_test.recommend import SEPARATED, NextTest
 from wedgesweep.diagnose.record_by_record import ByRecord
 from wedgesweep.diagnose.result import missing_force
-from wedgesweep.diagnose.result.estimates import finite, parameters, uncertain
-from wedgesweep.diagnose.verdict import LARGER, p_where_it_shows
+from wedgesweep.diagnose.result.estimates import finite, parameters, uncertain, widen
+from wedgesweep.diagnose.verdict import LARGER, Finding, p_where_it_shows
 from wedgesweep.diagnose.work import OutOfTime
 from wedgesweep.diagnosis_result import FAILED, NO_BETTER
 from wedgesweep.effects import EFFECTS
@@ -37,7 +37,7 @@ def document(found: Diagnosis) -> dict[str, Any]:
     content = {
         "verdict": finding.verdict,
         "reason": {"code": finding.reason.code, **finding.numbers},
-        "causes": _causes(finding.cause),
+        "causes": _causes(finding),
         "rivals": [
             {"effects": list(each.effects), "gap": each.penalised - best.penalised}
             for each in finding.alternatives
@@ -117,11 +117,13 @@ def _not_testable(found: Diagnosis) -> list[str]:
     return [score.effect for score in found.scores if not score.testable and score.effect not in explaining]
 
 
-def _causes(each: Explanation | None) -> list[dict[str, Any]]:
-    """The effects of an explanation with their parameters."""
-    if each is None:
+def _causes(finding: Finding) -> list[dict[str, Any]]:
+    """The effects of the cause with their parameters."""
+    if finding.cause is None:
         return []
-    numbers = parameters(each.fit)
+    numbers = parameters(finding.cause.fit)
+    for each in finding.larger:
+        widen(numbers, parameters(each))
     return [
         {
             "effect": name,
@@ -129,7 +131,7 @@ def _causes(each: Explanation | None) -> list[dict[str, Any]]:
             "branch": EFFECTS[name].branch,
             "parameters": numbers[name],
         }
-        for name in each.effects
+        for name in finding.cause.effects
     ]
 
 

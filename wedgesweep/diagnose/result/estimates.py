@@ -44,6 +44,14 @@ def parameters(fit: Fit) -> dict[str, dict[str, dict[str, Any]]]:
     }
 
 
+def widen(numbers: Mapping[str, Mapping[str, Any]], others: Mapping[str, Mapping[str, Any]]) -> None:
+    """Let the intervals of parameters hold those that another explanation finds for the same effects."""
+    for name in numbers.keys() & others.keys():
+        for key, own in numbers[name].items():
+            low, high = zip(own["ci95"], others[name][key]["ci95"], strict=True)
+            own["ci95"] = [min(low), max(high)]
+
+
 def change(quantity: Quantity, value: float, moved: float) -> float:
     """Change of a number in the form in which it is fitted: a logarithm, or the number itself."""
     if quantity.logarithmic:

@@ -135,6 +135,7 @@ def windows(record: Recorded, model: Config, law: str, fewest: int = 1) -> list[
                 begins=first / rate,
                 number=record.number,
                 channels=record.channels[:, first:end],
+                rms=record.channels.std(axis=1),
                 spectra=tuple(record.spectra),
                 passed_on=passed_on,
                 coefficients=min(max(ceil(top * inside / pi), FEWEST_COMPARED), inside),
@@ -177,8 +178,9 @@ def _extent(displacement: np.ndarray) -> tuple[float, float]:
 
 
 def _period(record: Recorded, model: Config) -> float:
-    """Natural period of the model in samples."""
-    return 2.0 * pi * model.natural_units(_extent(record.channels[0])[1]).time * record.rate
+    """Natural period of the model in samples; that of a mass without a spring is the whole record."""
+    record_omega = 2.0 * pi * record.rate / record.channels.shape[1]
+    return 2.0 * pi * model.natural_units(_extent(record.channels[0])[1], record_omega).time * record.rate
 
 
 def _passed_on(record: Recorded) -> np.ndarray:

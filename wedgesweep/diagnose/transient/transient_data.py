@@ -167,7 +167,8 @@ class TransientData(SampledData):
 
     @cached_property
     def units(self) -> NaturalUnits:
-        return self.model.natural_units(max(own.length for own in self.windows))
+        largest = max(self.windows, key=lambda own: own.length)
+        return self.model.natural_units(largest.length, largest.grid.omega)
 
     @cached_property
     def _scale(self) -> np.ndarray:

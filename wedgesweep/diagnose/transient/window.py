@@ -75,6 +75,9 @@ class RecordWindow:
     channels : ndarray, shape (C, n)
         Recorded displacement (m), velocity (m/s) and acceleration (m/s^2), or some of them, converted to the
         motion that is simulated.
+    rms : ndarray, shape (C,)
+        Rms of each channel about its mean in the whole record: model errors are shares of it, so that where a
+        motion has died down they are not shares of a creep.
     spectra : tuple of NoiseSpectrum
         Noise of each channel but for what the input's noise adds.
     passed_on : ndarray, shape (C, f)
@@ -100,6 +103,7 @@ class RecordWindow:
     begins: float
     number: int
     channels: np.ndarray
+    rms: np.ndarray
     spectra: tuple[NoiseSpectrum, ...]
     passed_on: np.ndarray
     coefficients: int
@@ -114,11 +118,6 @@ class RecordWindow:
     def compared(self) -> np.ndarray:
         """Cosine coefficients (C, K)."""
         return dct(self.channels, norm="ortho")[:, : self.coefficients]
-
-    @property
-    def rms(self) -> np.ndarray:
-        """Rms (C,) of each channel about its mean."""
-        return self.channels.std(axis=1)
 
     @property
     def motion(self) -> Motion:
