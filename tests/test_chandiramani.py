@@ -272,9 +272,8 @@ def test_more_preload_explains_all_observations_with_either_solver():
         np.testing.assert_allclose(one.peak_to_peak, other.peak_to_peak, rtol=1e-5)
         np.testing.assert_allclose(one.plateau, other.plateau, atol=1 / 256)
         np.testing.assert_allclose(one.distortion, other.distortion, rtol=1e-4)
-    for hertz in (33.0, 35.0):
-        found = by_radau(scenarios.excited(row, hertz, np.array([0.486e-3])))
-        np.testing.assert_allclose(found.peak_to_peak, levels[:, int(hertz - 20.0)], rtol=1e-5)
+    found = by_radau(scenarios.excited(row, 35.0, np.array([0.486e-3])))
+    np.testing.assert_allclose(found.peak_to_peak, levels[:, 15], rtol=1e-5)
 
 
 def test_each_input_alone_decides_its_own_observations():

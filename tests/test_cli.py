@@ -110,7 +110,7 @@ def test_one_case_is_counted_in_the_singular(here):
     solver = '[solver]\nmethod = "event-driven"\nsettle = "steady"\n'
     (here / "one.toml").write_text(grid + solver)
     assert "cases: 1 = 1 friction law x 1 frequency x 1 amplitude\n" in invoke("check", "one.toml")
-    answer = invoke("run", "one.toml")
+    answer = run("one.toml")
     assert answer.startswith("1 case\n1/1 case, ")
     assert "1 case: 1 ok" in answer
     assert "wrote one.csv: 1 case\n" in invoke("export", "one.nc")
@@ -342,9 +342,10 @@ def test_plot_one_kind(here, drawn_dataset):
     told = invoke("plot", "response", drawn_dataset, "--beta", 1.75, "--amplitude", 1, "-o", "r.svg")
     assert told == "wrote r.svg\n"
     assert (here / "r.svg").read_text().startswith("<?xml")
-    assert f"wrote {drawn_dataset.parent / 'stick-map.png'}" in invoke("plot", "stick-map", drawn_dataset)
-    invoke("plot", "stick-map", drawn_dataset, "--format", "pdf")
-    assert (drawn_dataset.parent / "stick-map.pdf").read_bytes().startswith(b"%PDF")
+    beside = drawn_dataset.with_name("friction-laws.png")
+    assert f"wrote {beside}" in invoke("plot", "friction-laws", drawn_dataset)
+    invoke("plot", "friction-laws", drawn_dataset, "--format", "pdf")
+    assert beside.with_suffix(".pdf").read_bytes().startswith(b"%PDF")
 
 
 def test_plot_options_reach_the_figure_in_si(here, drawn_dataset, monkeypatch):

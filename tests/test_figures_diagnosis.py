@@ -59,8 +59,9 @@ def test_draws_and_says_what_it_shows(kind):
     assert diagnosis.FIGURES[kind].load().draw.__doc__.count("To see:") == 1
 
 
+# Without a cause, without known amplitudes, with an attempt; with rivals. That of a cause is drawn above.
 @pytest.mark.few(2)
-@pytest.mark.parametrize("verdict", fixture_diagnosis.CASES)
+@pytest.mark.parametrize("verdict", ["nothing-missing", "data-insufficient", "none-of-mine", "tied"])
 @pytest.mark.parametrize("kind", KINDS)
 def test_every_verdict(kind, verdict):
     result = build(verdict, tests=2 if verdict == "data-insufficient" else 3)

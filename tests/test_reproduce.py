@@ -70,7 +70,7 @@ def test_criteria_hold_up_to_their_limits_and_never_for_nan():
     assert not any(check.holds for check in (near("x", np.nan, 1.0, 1.0), below("x", np.nan, 1.0)))
 
 
-@pytest.mark.few(6)
+@pytest.mark.few(3)
 @pytest.mark.parametrize("number", BY_NUMBER)
 def test_every_claim_says_what_it_found(runs, number):
     found = BY_NUMBER[number].find(runs)

@@ -299,6 +299,7 @@ def test_a_foreign_tone_has_a_phase_of_its_own_in_each_test(here):
 
 
 def test_what_is_not_steady_is_told(here):
+    (here / "tests.toml").write_text(TESTS[: TESTS.rindex("[[test]]")])
     told = synthesize("--settle-periods", 2, "--periods", 4)
     assert "test[0] (20 Hz, 0.11 mm): not steady after 2 periods; raise --settle-periods" in told
 

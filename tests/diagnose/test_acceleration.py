@@ -78,10 +78,9 @@ def test_a_next_release_is_offered_for_the_accelerometer_that_is_there(tmp_path)
 
 
 @pytest.mark.acceptance
-@pytest.mark.parametrize("name", RIGS)
-def test_the_acceleration_against_the_ground_under_a_sweep(tmp_path, name):
+def test_the_acceleration_against_the_ground_under_a_sweep(tmp_path):
     """Where mass and base each carry an accelerometer."""
-    rig, effects, travel, rate, noise = RIGS[name]
+    rig, effects, travel, rate, noise = RIGS["wedge"]
     natural = 1.0 / (2.0 * np.pi * parse(rig, "model").natural_units(1e-3 * travel).time)
     test = PlannedTest(
         0.6 * natural, 0.2 * travel, "mm", 0.0, True, "transient", "sweep", 20.0 / natural, 1.8 * natural
@@ -94,7 +93,7 @@ def test_the_acceleration_against_the_ground_under_a_sweep(tmp_path, name):
     base = 0.2e-3 * travel * (bend * np.cos(2.0 * np.pi * turns) - rate_of**2 * np.sin(2.0 * np.pi * turns))
     rng = np.random.default_rng(3)
     # The suspension's motion is that of the side frame less that of the bolster.
-    absolute = run.acceleration + base if "oscillator" in rig else base - run.acceleration
+    absolute = base - run.acceleration
     u = base + 1e-3 * base.std() * rng.standard_normal(time.size)
     table = [time, absolute + noise * rng.standard_normal(time.size), u]
     columns = CHANNEL.format(', of = "absolute"')

@@ -83,7 +83,6 @@ def driven(late: float = 0.0, gain: float = 1.0) -> list[np.ndarray]:
     [
         ("loop", {"late": DELAY}, "channel_delay", "time_s", DELAY),
         ("loop", {"gain": 1.08}, "force_gain", "scale", 1.08),
-        ("transient", {"late": DELAY}, "channel_delay", "time_s", DELAY),
         ("transient", {"gain": 1.08}, "input_gain", "scale", 1.08),
         ("steady", {"late": DELAY}, "channel_delay", "time_s", DELAY),
     ],

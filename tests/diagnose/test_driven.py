@@ -259,7 +259,7 @@ def test_what_happens_between_table_and_side_frame_shows_in_the_motion_against_t
 )
 def test_wedges_under_a_recorded_motion(tmp_path, effect, numbers, size):
     path = write(tmp_path, [size * rough(3, 20.0)], {effect: numbers}, WEDGE, noise=(2e-5, 1e-3))
-    path.write_text(path.read_text() + "to_s = 3.0\n")
+    path.write_text(path.read_text() + "to_s = 2.0\n")
     found = diagnosed(path, ["lift_off", "fixture_resonance", "friction_level"])
     assert [cause["effect"] for cause in found.causes] == [effect]
     for estimate, true in zip(found.causes[0]["parameters"].values(), numbers.values(), strict=True):

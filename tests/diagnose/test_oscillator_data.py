@@ -121,9 +121,7 @@ def toml_of(tests):
 @pytest.mark.parametrize(
     ("effect", "hidden", "recorded", "tests"),
     [
-        ("viscous_damping", {"coefficient_N_s_per_m": 6.0}, False, TESTS),
         ("directional_damping", {"coefficient_N_s_per_m": 6.0, "asymmetry": -0.7}, True, TESTS),
-        ("quadratic_drag", {"coefficient_N_s2_per_m2": 200.0}, False, TESTS),
         ("backlash", {"clearance_mm": 0.2}, True, TESTS),
         ("damper_play", {"clearance_mm": 0.0002}, False, MOSTLY_SLIGHT),
         ("series_compliance", {"stiffness_N_per_mm": 3.0, "coefficient_N_s_per_m": 4.0}, True, TESTS),

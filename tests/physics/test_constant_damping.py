@@ -46,6 +46,7 @@ def test_forces_solve_newtons_equations_as_vectors(law, lean):
     assert sum(unique) >= 0.8 * len(unique)
 
 
+@pytest.mark.acceptance
 def test_free_bodies_fly_under_the_spring_between_them():
     """Both contacts open: wedge and bolster as vectors, each under its spring and weight."""
     generator = np.random.default_rng(2)

@@ -41,7 +41,7 @@ def test_energy_balance_by_radau():
     assert numbers["dissipated_energy"] == pytest.approx(numbers["supplied_energy"], rel=1e-5)
 
 
-@pytest.mark.few(2)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("beta", [0.3, 1.4])
 @pytest.mark.parametrize("law", ["coulomb", "exponential"])
 def test_without_friction_the_response_is_the_linear_oscillator(law, beta):

@@ -66,7 +66,7 @@ def saltation(jump, before, after, gap):
 @pytest.mark.acceptance
 @pytest.mark.parametrize("gap", [COLUMN_GAP, BOLSTER_GAP])
 @pytest.mark.parametrize("restitution", [0.3, 0.8])
-@pytest.mark.parametrize("seed", range(2))
+@pytest.mark.parametrize("seed", [0])
 def test_differences_across_an_impact_hold_its_saltation_matrix(gap, restitution, seed):
     bench, random = Bench(restitution), np.random.default_rng([seed, gap])
     start = np.zeros(6)

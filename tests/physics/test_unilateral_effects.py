@@ -44,7 +44,7 @@ def velocities(y, case):
     return along * t_c - gap * n_c + frame, rise + y[3], y[3]
 
 
-@settings(max_examples=200, deadline=None, derandomize=True)
+@settings(max_examples=100, deadline=None, derandomize=True)
 @given(impacts())
 def test_impulses_move_wedge_bolster_and_side_frame_and_take_energy(given_impact):
     case, y, touches, restitution = given_impact
@@ -102,7 +102,7 @@ def test_closed_contacts_under_load_are_those_of_bilateral_joints(effects):
 # A guide that holds the bolster, or slips
 
 
-@settings(max_examples=300, deadline=None, derandomize=True)
+@settings(max_examples=100, deadline=None, derandomize=True)
 @given(st.tuples(*[st.floats(-30.0, 30.0)] * 3), st.tuples(st.booleans(), st.booleans()), st.booleans())
 def test_a_guide_holds_the_bolster_or_rubs_with_its_whole_force(load, touches, on_table):
     """Motion and reactions fulfil the equations and inequalities of Coulomb's law on all three."""

@@ -125,10 +125,9 @@ def assert_same(room, its, y, start):
 KINDS = {"plain": {}, "effects": EFFECTS, "stop": STOP, "series": {}}
 
 
+@pytest.mark.few(1)
+@pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("law", LAW_NAMES)
-@pytest.mark.parametrize(
-    "kind", ["plain", *(pytest.param(kind, marks=pytest.mark.acceptance) for kind in list(KINDS)[1:])]
-)
 def test_random_cases_are_bilateral_until_a_contact_opens_and_themselves_after_that(law, kind):
     """Where nothing opens bit for bit; elsewhere what the system for all motions does without turns."""
     generator, closed, opened = np.random.default_rng(3), 0, 0

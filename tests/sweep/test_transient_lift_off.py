@@ -34,9 +34,8 @@ def solved(*args, **options):
 
 
 @pytest.mark.acceptance
-@pytest.mark.parametrize("given", [RELEASE, SWEPT])
-def test_both_solvers_agree(given):
-    one, other = (solved(given, "unilateral", method=method) for method in ("event-driven", "radau"))
+def test_both_solvers_agree():
+    one, other = (solved(SWEPT, "unilateral", method=method) for method in ("event-driven", "radau"))
     size = float(np.abs(one["displacement"]).max())
     assert one["column_open_fraction"].max() > 0.1
     assert np.array_equal(one["impacts"], other["impacts"])
@@ -46,10 +45,8 @@ def test_both_solvers_agree(given):
 
 
 @pytest.mark.acceptance
-@pytest.mark.parametrize("given", [RELEASE, SWEPT])
-def test_motions_that_keep_contact_are_those_of_bilateral_joints(given):
-    held = solved(given, "bilateral", scale=0.02)
-    open_ = solved(given, "unilateral", scale=0.02)
+def test_motions_that_keep_contact_are_those_of_bilateral_joints():
+    held, open_ = (solved(RELEASE, joints, scale=0.02) for joints in ("bilateral", "unilateral"))
     assert not (held["lift_off_fraction"] > 0.0).any()
     assert np.abs(held["displacement"] - open_["displacement"]).max() < 1e-12
     for name in ("column_open_fraction", "bolster_open_fraction", "impacts"):
@@ -98,7 +95,7 @@ def test_the_open_phases_are_told(tmp_path, monkeypatch):
     (tmp_path / "open.toml").write_text(study(RELEASE, "unilateral"))
     (tmp_path / "held.toml").write_text(study(RELEASE, "bilateral"))
     for name, outside in (("open", False), ("held", True)):
-        for told in (invoke("run", f"{name}.toml"), invoke("status", f"{name}.nc")):
+        for told in (invoke("run", f"{name}.toml", "--n-jobs", 1), invoke("status", f"{name}.nc")):
             assert ("outside of the model's validity" in told) is outside
     # Wedges that lift off do not move with the bolster: nothing tells their forces from inertia.
     told = invoke("plot", "all", "open.nc", "-o", "drawn")

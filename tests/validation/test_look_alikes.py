@@ -27,11 +27,8 @@ CLOSE = {
 }
 
 
-# One of each kind of recording; make validate has all of them.
-FEW = (
-    *("linear, random force", "stiffening, random force", "damper with play of 1 mm", "spring that stiffens"),
-    *("damper that differs by direction", "pendulum from 60 deg", "damper on a bushing"),
-)
+# One of each verdict: under a random force, a loop, a release; make validate has all of them.
+FEW = ("linear, random force", "damper with play of 1 mm", "pendulum from 60 deg")
 
 
 def comes_out_right(name):

@@ -38,7 +38,7 @@ def test_in_clean_data_nothing_is_named(tmp_path):
 @pytest.mark.acceptance
 def test_two_tests_of_unknown_amplitude_ask_for_a_third(tmp_path):
     measured, _ = make(PAPER_TESTS, tmp_path)
-    found = diagnose(measured, tmp_path / "found", None, "--no-report")
+    found = diagnose(measured, tmp_path / "found", CANDIDATES, "--no-report")
     assert found.verdict in ("data-insufficient", "tied")
     following = found.document["next_test"]
     assert following["frequency_hz"] > 0.0
