@@ -46,9 +46,9 @@ validate: install  ## hide effects in data, diagnose them, compare with the trut
 everywhere:  ## the tests in eight surroundings: locale, home, user, versions, ... (half an hour)
 	scripts/everywhere.sh
 
-torture: install  ## 100,000 hostile inputs, 10,000 files of each of 14 formats and 200 kills (hours)
+torture: install  ## 100,000 hostile inputs, 10,000 files of each of 16 formats and 200 kills (hours)
 	$(BIN)/python scripts/fuzz.py
-	$(BIN)/python scripts/fuzz.py --formats --inputs 140000
+	$(BIN)/python scripts/fuzz.py --formats --inputs 160000
 	$(BIN)/python scripts/kill_campaign.py
 
 bench: install  ## benchmarks, as ratios within one run

@@ -1,7 +1,7 @@
 """Try hostile inputs of every kind on the command line, and print what becomes of them.
 
 An input is drawn from the seed and its number alone: ``--only NUMBER --keep DIR`` writes it to DIR and runs
-it again. ``--formats --inputs 140000`` tries 10,000 files of each of the 14 formats of measured data.
+it again. ``--formats --inputs 160000`` tries 10,000 files of each of the 16 formats of measured data.
 
 The exit code is 1 if an input gives a traceback, takes more than 20 s of processor time, kills the process,
 makes a library warn, prints a number that is not finite, or is refused without naming anything.

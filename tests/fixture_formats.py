@@ -1,5 +1,7 @@
 """Writers of specimens of every binary format: columns by name, three of them: time, length and velocity."""
 
+import json
+
 import netCDF4
 import numpy as np
 import pytest
@@ -70,6 +72,13 @@ def npz(path, columns):
     np.savez(path, **columns)
 
 
+def json_text(path, columns):
+    lists = {name: [*map(float, values)] for name, values in columns.items()}
+    rows = [dict(zip(columns, row, strict=True)) for row in zip(*lists.values(), strict=True)]
+    lines = [json.dumps({"rig": "A"} | lists)] if path.suffix == ".json" else map(json.dumps, rows)
+    path.write_text("\n".join(lines))
+
+
 # Names of files and their writers.
 SPECIMENS = (
     ("one.mat", savemat),
@@ -82,4 +91,6 @@ SPECIMENS = (
     ("one.xlsx", xlsx),
     ("one.tdms", tdms),
     ("one.mf4", mdf),
+    ("one.json", json_text),
+    ("one.jsonl", json_text),
 )

@@ -148,7 +148,7 @@ def test_what_swings_is_a_pendulum(tmp_path):
     for name, driven in ("driven", True), ("free", False):
         (tmp_path / name).mkdir()
         t, angle, torque = pendulum(driven)
-        columns, header = (t, angle, torque), "t (s),theta (rad),torque (N m)"
+        columns, header = (t, angle, torque), "t (s),theta (rad),torque_nm"
         if not driven:
             columns, header = columns[:2], header.rpartition(",")[0]
         own = begun(tmp_path / name, text(tmp_path / f"{name}.csv", *columns, header=header)).model.oscillator

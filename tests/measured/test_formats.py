@@ -1,5 +1,6 @@
 """The same vibration in every form that people have it in is the same record, and its form is told."""
 
+import json
 import sys
 from zipfile import ZipFile
 
@@ -153,12 +154,18 @@ def test_binary_files_hold_variables(tmp_path, plain, name, write):
 
 
 @pytest.mark.parametrize(
-    ("name", "inside"), [("one.mat", "bench."), ("new.mat", "bench."), ("new.mat", "bench/")]
+    ("name", "inside"),
+    [("one.mat", "bench."), ("one.json", "bench."), ("new.mat", "bench."), ("new.mat", "bench/")],
 )
 def test_channels_in_a_struct(tmp_path, plain, name, inside):
     columns = dict(zip("tdv", vibration(), strict=True))
     if name == "one.mat":
         savemat(tmp_path / name, {"bench": columns, "matrix": np.eye(3)})
+    elif name == "one.json":
+        rows = [
+            dict(zip(columns, row, strict=True)) for row in zip(*map(list, columns.values()), strict=True)
+        ]
+        (tmp_path / name).write_text(json.dumps({"rig": {"kg": 0.7}, "bench": rows}))
     else:
         with pytest.importorskip("h5py").File(tmp_path / name, "w") as file:
             for each, values in columns.items():

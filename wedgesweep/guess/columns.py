@@ -97,6 +97,8 @@ def unit_of(column: Column, quantities: Sequence[str]) -> str:
     """The unit that a file names, of one of the quantities or else foreign; empty if there is none."""
     written = [column.channel.unit, *BRACKETS.findall(column.label), *re.split(r"[_\s,:]+", column.label)[1:]]
     known = [usual(each.strip()) for each in written if each.strip()]
+    if re.search(STEMS[FORCE], column.label.lower()):  # no torque is a length, however its unit is written
+        known = ["N m" if each == "nm" else each for each in known]
     valid = {unit for each in quantities for unit in UNITS[each]}
     return next((each for each in known if each in valid), "") or next(
         (each for each in known if is_unit(each)), ""

@@ -16,6 +16,8 @@ READERS: dict[str, Callable[[Path, Wanted], Mapping[str, Channel | None]]] = {
     ".npy": arrays.npy,
     ".npz": arrays.npz,
     ".wav": arrays.wav,
+    ".json": arrays.json_text,
+    ".jsonl": arrays.json_text,
     ".mat": arrays.matlab,
     ".h5": hdf5.hdf5,
     ".hdf5": hdf5.hdf5,

@@ -1,5 +1,6 @@
-"""Arrays of numpy (.npy, .npz), sound (.wav) and variables of MATLAB (.mat)."""
+"""Arrays of numpy (.npy, .npz), sound (.wav), variables of MATLAB (.mat), and JSON (.json, .jsonl)."""
 
+import json
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
@@ -53,6 +54,32 @@ def wav(file: Path, wanted: Wanted) -> dict[str, Channel | None]:
         f"track {number}": Channel((track - zero) / size, "", clock)
         for number, track in enumerate(samples.T, 1)
     }
+
+
+def json_text(file: Path, wanted: Wanted) -> dict[str, Channel | None]:
+    """Lists and numbers by the keys that lead to them, as a.b; each key of a list of objects leads to a list."""
+    text = file.read_text("utf-8-sig")
+    lines = [line for line in text.splitlines() if line.strip()]
+    opened = [json.loads(line) for line in lines] if file.suffix.lower() == ".jsonl" else json.loads(text)
+    return {name or "list": Channel(_samples(each)) for name, each in _lists(opened)}
+
+
+def _lists(value: Any, path: str = "") -> Iterator[tuple[str, Any]]:
+    if isinstance(value, list) and value and all(isinstance(each, dict) for each in value):
+        value = {key: [each.get(key) for each in value] for key in value[0]}
+    if not isinstance(value, dict):
+        yield path, value
+        return
+    for key, each in value.items():
+        yield from _lists(each, f"{path}.{key}" if path else key)
+
+
+def _samples(values: Any) -> np.ndarray:
+    """Samples, NaN where null; what is no array of numbers stays as it is."""
+    try:
+        return np.asarray(values, float)
+    except (TypeError, ValueError, OverflowError):
+        return np.asarray(values, object)
 
 
 def matlab(file: Path, wanted: Wanted) -> dict[str, Channel | None]:
