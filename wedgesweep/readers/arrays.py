@@ -57,7 +57,7 @@ def wav(file: Path, wanted: Wanted) -> dict[str, Channel | None]:
 
 
 def json_text(file: Path, wanted: Wanted) -> dict[str, Channel | None]:
-    """Lists and numbers by the keys that lead to them, as a.b; each key of a list of objects leads to a list."""
+    """Lists and numbers by the keys that lead to them, as a.b; a list of objects is one list for each key."""
     text = file.read_text("utf-8-sig")
     lines = [line for line in text.splitlines() if line.strip()]
     opened = [json.loads(line) for line in lines] if file.suffix.lower() == ".jsonl" else json.loads(text)
