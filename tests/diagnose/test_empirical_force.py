@@ -134,9 +134,8 @@ def test_force_without_a_name_is_drawn_and_runs(tmp_path):
 
 
 @pytest.mark.acceptance
-@pytest.mark.parametrize("stiffening", [0.0, 3e6])
-def test_nothing_is_drawn_where_a_name_explains_the_tests(tmp_path, stiffening):
-    measurement = hidden_in_loops(tmp_path, lambda x, v: stiffening * x**3)
+def test_nothing_is_drawn_where_a_name_explains_the_tests(tmp_path):
+    measurement = hidden_in_loops(tmp_path, lambda x, v: 3e6 * x**3)
     asked = [*CANDIDATES, "empirical_force"]
     found = api.diagnose_measurement(measurement, effects=asked, n_jobs=1)
     assert json.loads(found.to_json())["empirical_force"]["offered"] is False
