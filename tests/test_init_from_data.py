@@ -162,16 +162,19 @@ def test_what_swings_is_a_pendulum(tmp_path):
 def test_what_coasts_to_rest_has_no_spring(tmp_path):
     t = np.arange(0.0, 5.0, 0.02)
     slowing = 0.9 - 0.3 * t  # m/s: it is pushed, and friction stops it after 3 s
-    x = np.where(slowing > 0.0, 0.9 * t - 0.15 * t**2, 1.35) + 3e-4 * np.random.default_rng(0).normal(
-        size=t.size
-    )
+    x = np.where(slowing > 0.0, 0.9 * t - 0.15 * t**2, 1.35)
+    x += 3e-4 * np.random.default_rng(0).normal(size=t.size)
     found = begun(tmp_path, text(tmp_path / "cart.csv", t, x, header="Time (s),Position (m)"))
     assert found.model.oscillator["spring"] == 0.0
     assert transient_data(found).tests == 1  # nothing cuts what has no period
-    t, x = decay()
-    (tmp_path / "swings").mkdir()
-    found = begun(tmp_path / "swings", text(tmp_path / "swings.csv", t, x, header="s,mm"))
+
+
+@pytest.mark.parametrize("samples", [1900, 3200])
+def test_six_swings_that_friction_ends_are_three_windows(tmp_path, samples):
+    t, x = (each[:samples] for each in decay())
+    found = begun(tmp_path, text(tmp_path / "swings.csv", t, x, header="s,mm"))
     assert found.model.oscillator["spring"] == pytest.approx((2.0 * np.pi * 4.0) ** 2, rel=0.05)
+    assert transient_data(found).tests == 3
 
 
 def test_an_elastic_joint_does_not_stand_for_a_damper(tmp_path):

@@ -23,8 +23,9 @@ DRIVEN_LEAD, RECENT = 1.5, 1.0
 STUCK = 0.05
 # Share of a record under an input that is simulated before its first window, at most.
 LEAD_SHARE = 0.125
-# A single record is cut into at least FEWEST windows, if each has SHORTEST natural periods.
-FEWEST, SHORTEST = 3, 3.0
+# A single record is cut into at least FEWEST windows, if each has SHORTEST natural periods. Friction ends
+# many free motions after six to nine.
+FEWEST, SHORTEST = 3, 2.0
 # Highest frequency that is compared, over the natural frequency and over the highest that stands out.
 HARMONICS, BEYOND = 8.0, 2.0
 # Share of the record at its end whose mean is where the motion comes to rest.
