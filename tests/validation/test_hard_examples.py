@@ -23,7 +23,7 @@ def tolerant(request, tmp_path_factory):
     shutil.copytree(source, copy)
     file = copy / "measured.toml"
     file.write_text(file.read_text().replace("[measurement]\n", "[measurement]\nmodel_error = 0.02\n", 1))
-    found = api.diagnose_measurement(api.read_measurement(file), n_jobs=2)
+    found = api.diagnose_measurement(api.read_measurement(file), n_jobs=1)
     return CAUSES[request.param], found.document
 
 
@@ -32,7 +32,7 @@ def test_the_right_cause_is_told_beside_a_misfit(name, reason):
     if not (FOLDER / name).is_dir():
         pytest.skip(f"needs {name}")
     truth = json.loads((FOLDER / "truth.json").read_text())[name]
-    found = api.diagnose_measurement(api.read_measurement(FOLDER / name / "measured.toml"), n_jobs=2)
+    found = api.diagnose_measurement(api.read_measurement(FOLDER / name / "measured.toml"), n_jobs=1)
     assert (found.verdict, found.document["reason"]["code"]) == ("consistent-with", reason)
     assert [each["effect"] for each in found.causes] == truth["truth"]
 

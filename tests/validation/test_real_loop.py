@@ -47,7 +47,7 @@ def diagnosed(folder, measured):
     (folder / "model.toml").write_text(MODEL)
     (folder / "measured.toml").write_text(measured)
     shutil.copy(DATA, folder)
-    return api.diagnose_measurement(read(folder / "measured.toml"), effects=CANDIDATES, n_jobs=2)
+    return api.diagnose_measurement(read(folder / "measured.toml"), effects=CANDIDATES, n_jobs=1)
 
 
 @pytest.mark.acceptance
