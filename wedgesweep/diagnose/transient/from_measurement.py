@@ -15,6 +15,8 @@ from wedgesweep.measured.declarations import MOTIONS
 
 # Parts of a record, in the loudest of which its motion must be larger than its noise.
 PARTS = 8
+# Windows that are compared: more of them take time, and tell little that is new.
+MOST = 40
 
 
 def transient_data(measurement: Measurement) -> TransientData:
@@ -23,15 +25,16 @@ def transient_data(measurement: Measurement) -> TransientData:
     channels = [_channels(measurement, test) for test in tests]
     evidence, spectra = _noise(measurement, channels)
     fewest = FEWEST if len(tests) == 1 else 1
-    found: list[RecordWindow] = []
+    by_test: list[list[RecordWindow]] = []
     for number, test in enumerate(tests):
         own = {order: spectra[number, order] for order in channels[number]}
         try:
             _refuse_noise(channels[number], own)
             record = _record(measurement, number, channels[number], list(own.values()))
-            found += windows(record, measurement.model_of(test), measurement.law, fewest)
+            by_test.append(windows(record, measurement.model_of(test), measurement.law, fewest))
         except InputError as error:
             raise InputError([f"{test.file}: {problem}" for problem in error.problems]) from error
+    found = _spread(by_test)
     return TransientData(
         tuple(found),
         measurement.uncertain_of_records,
@@ -39,6 +42,17 @@ def transient_data(measurement: Measurement) -> TransientData:
         measurement.input_gain_std if any(own.driven for own in found) else 0.0,
         evidence=evidence,
     )
+
+
+def _spread(by_test: list[list[RecordWindow]]) -> list[RecordWindow]:
+    """Of many windows MOST in all, at even distances in each record, but the first one of each at least."""
+    share = min(MOST / sum(map(len, by_test)), 1.0)
+    counts = [max(round(share * len(own)), 1) for own in by_test]
+    return [
+        own[place]
+        for own, count in zip(by_test, counts, strict=True)
+        for place in np.linspace(0, len(own) - 1, count).round().astype(int)
+    ]
 
 
 def _channels(measurement: Measurement, test: TestRecord) -> Channels:

@@ -121,9 +121,11 @@ class TransientData(SampledData):
             return data
         (values,) = data.known_values([scenario], OF_INPUT)
         starts, gains = data._states(scenario.point), data._gain(scenario)
-        own = zip(data.windows, starts, gains, strict=True)
-        found = tuple(each.decorrelation(values, start, gain, TOLERANCE) for each, start, gain in own)
-        return replace(data, decorrelations=found)
+        found = []
+        for own, start, gain in zip(data.windows, starts, gains, strict=True):
+            work.add(0.0)  # no part of a search, but it takes time
+            found.append(own.decorrelation(values, start, gain, TOLERANCE))
+        return replace(data, decorrelations=tuple(found))
 
     def _with_bounded_noise(self, scenario: Scenario) -> Self:
         """The data with less noise where the residual of a scenario shows that there is less."""
