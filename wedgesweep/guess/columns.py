@@ -344,6 +344,8 @@ def _explained(displacement: np.ndarray, force: np.ndarray) -> float:
         v = np.gradient(np.convolve(x, np.ones(9) / 9.0, mode="same"))
         speed = max(float(np.abs(v).std()), 1e-300)
         parts = np.column_stack([np.ones(size), x, v, np.tanh(5.0 * v / speed), np.gradient(v)])
+        if not (np.isfinite(parts).all() and np.isfinite(f).all()):
+            return 0.0
         left = f - parts @ np.linalg.lstsq(parts, f, rcond=None)[0]
         return 1.0 - float(left.var() / max(f.var(), 1e-300))
 

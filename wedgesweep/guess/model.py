@@ -60,14 +60,12 @@ class Numbers:
 def numbers(measurement: Measurement) -> Numbers:
     """Mass, spring and damper that explain the records best; a free motion tells their ratio only."""
     tests = measurement.tests[:TESTS]
-    forced = all(test.force is not None or measurement.recorded_input == "force" for test in tests)
-    if (
-        not forced
-        and all(test.input is not None for test in tests)
-        and measurement.recorded_input is not None
-    ):
+    if all(test.force is not None or measurement.recorded_input == "force" for test in tests):
+        law = _under_force
+    elif all(test.input is not None for test in tests) and measurement.recorded_input is not None:
         return _on_base(tests, measurement)
-    law = _under_force if forced else _free
+    else:
+        law = _free
     left, found = law(tests, _spring)
     if measurement.model.turns and all(test.displacement is not None for test in tests):
         left_by_pendulum, pendulum = law(tests, np.sin)
@@ -146,9 +144,8 @@ def _under_force(tests: Sequence[TestRecord], restoring: Restoring) -> tuple[flo
     """
     loads = [test.model.get(NORMAL_FORCE, 0.0) for test in tests]
     loaded = min(loads) > 0.0
-    moving = [
-        _moving(test, load if loaded else 1.0, restoring) for test, load in zip(tests, loads, strict=True)
-    ]
+    factors = loads if loaded else [1.0] * len(tests)
+    moving = [_moving(test, factor, restoring) for test, factor in zip(tests, factors, strict=True)]
     all_of_it = _explained(moving)
     later = [_explained([each.after(share) for each in moving]) for share in BUILT_UP]
     clearer = [each for each in later if each[0] < CLEARLY * all_of_it[0]]

@@ -124,7 +124,9 @@ def _of_text(path: Path) -> Survey:
     for decimal in ({}, {"decimal": "comma"}, {"decimal": "point"}):
         try:
             how = csv_dialect.detect(lines, encoding, numbers, {"delimiter": delimiter, **decimal})
-            assert how is not None
+            if how is None:
+                faults.append("no row from which on its columns hold numbers; export it as CSV")
+                continue
             stated = {**decimal, **_delimiter(lines, encoding, numbers, how, decimal)}
             table = text.read(path, numbers, stated)
         except (ReadError, ValueError) as error:
