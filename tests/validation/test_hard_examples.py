@@ -9,7 +9,7 @@ import pytest
 from wedgesweep import api
 
 FOLDER = Path(__file__).parents[3] / "shared" / "hard-examples"
-CAUSES = {"imperfect-1": "guide_friction"}
+CAUSES = {"imperfect-1": "guide_friction", "imperfect-2": "fixture_resonance"}
 pytestmark = pytest.mark.acceptance
 
 
@@ -27,7 +27,7 @@ def tolerant(request, tmp_path_factory):
     return CAUSES[request.param], found.document
 
 
-@pytest.mark.parametrize(("name", "reason"), [("friction-054", "at-limit")])
+@pytest.mark.parametrize(("name", "reason"), [("ageing-022", "more-accurate"), ("friction-054", "at-limit")])
 def test_the_right_cause_is_told_beside_a_misfit(name, reason):
     if not (FOLDER / name).is_dir():
         pytest.skip(f"needs {name}")
