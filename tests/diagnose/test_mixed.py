@@ -132,8 +132,8 @@ def test_the_start_of_a_frame_has_columns_of_its_own_beside_steady_tests(tmp_pat
     # Amplitude of the steady test, start of the release; phase of a tone, starts of column and frame.
     steady, *windows = (columns != 0.0).any(axis=1).tolist()
     assert steady == [True] + 7 * [False]
-    assert windows == [[False, True, True, False, False, False, True, True]] * 2
-    assert data.extra_nuisances(("fixture_resonance",)).tolist() == [0, 2, 2]
+    assert windows == [[False, True, True, False, False, False, True, True]] * 3
+    assert data.extra_nuisances(("fixture_resonance",)).tolist() == [0, 2, 2, 2]
     assert len(data.nuisances((), start)) == 3
 
 

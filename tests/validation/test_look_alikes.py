@@ -3,15 +3,15 @@
 import look_alikes
 import pytest
 
-from wedgesweep.effects import EFFECTS
-
-OF_FRICTION = [name for name, each in EFFECTS.items() if each.family == "friction-law"]
-FRICTION = {"guide_friction", "friction_level", *OF_FRICTION}
 NAMED = {
     "stiffening, random force": {"cubic_stiffness"},
     "stiffening, nine samples a period": {"cubic_stiffness"},
     "drag, random force": {"quadratic_drag"},
     "pendulum from 10 deg": {"viscous_damping", "cubic_stiffness"},
+    # A sine is no candidate, and from far away damping is less than what a cubic spring leaves of it.
+    "pendulum from 60 deg": {"cubic_stiffness"},
+    "pendulum with drag": {"cubic_stiffness"},
+    "pendulum with dry friction": {"cubic_stiffness", "guide_friction"},
     "damper that differs by direction": {"directional_damping"},
     "damper with play of 1 mm": {"damper_play"},
     "damper on a bushing": {"series_compliance"},
@@ -19,14 +19,6 @@ NAMED = {
     "spring that stiffens": {"cubic_stiffness"},
 }
 NOTHING = ("linear, random force", "damper")
-# What the candidates only come close to: the best single effect, and the best pair if there is one.
-CLOSE = {
-    "pendulum from 60 deg": [["cubic_stiffness"], ["cubic_stiffness", "viscous_damping"]],
-    "pendulum with drag": [["cubic_stiffness"], ["cubic_stiffness", "quadratic_drag"]],
-    "pendulum with dry friction": [["cubic_stiffness"], ["cubic_stiffness", "guide_friction"]],
-}
-
-
 # One of each verdict: under a random force, a loop, a release; make validate has all of them.
 FEW = ("linear, random force", "damper with play of 1 mm", "pendulum from 60 deg")
 
@@ -37,17 +29,12 @@ def comes_out_right(name):
     causes = {cause["effect"] for cause in found.causes}
     if name in NOTHING:
         assert found.verdict == "nothing-missing"
-    elif name in NAMED:
-        assert (found.verdict, causes) in (("named", NAMED[name]), ("consistent-with", NAMED[name]))
-        assert not causes & FRICTION
     else:
-        assert (found.verdict, found.causes) == ("none-of-mine", [])
-        best = [sorted(level["effects"]) for level in found.document["ladder"][1:]]
-        assert best[: len(CLOSE[name])] == CLOSE[name]
+        assert (found.verdict, causes) in (("named", NAMED[name]), ("consistent-with", NAMED[name]))
 
 
 def test_no_look_alike_is_left_out():
-    assert {*NAMED, *NOTHING, *CLOSE} == set(look_alikes.MADE) > set(FEW)
+    assert {*NAMED, *NOTHING} == set(look_alikes.MADE) > set(FEW)
 
 
 @pytest.mark.acceptance
