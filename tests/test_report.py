@@ -250,6 +250,20 @@ def test_sentence(verdict):
             "explains all tests (without: 47 %; next best: 26 %; held-out tests: 1.6 %), though no",
         ),
         (
+            "consistent-with",
+            {
+                "reason": {
+                    **{"code": "more-accurate", "accuracy": 0.004},
+                    **{"base": 0.47, "next_best": 0.26, "held_out": 0.016},
+                    "larger": [
+                        {"effects": ["stribeck", other], "accuracy": left}
+                        for other, left in (("preload", 0.001), ("ageing", 0.002))
+                    ],
+                }
+            },
+            "; more is missing: another effect beside it leaves much less, stribeck + preload (0.1 %) or",
+        ),
+        (
             "data-insufficient",
             {"reason": {"code": "no-signal", "power_over_noise": 1.04}},
             "These 2 tests hold hardly more than noise: 1 times its power",
@@ -294,6 +308,8 @@ def test_tests_that_are_too_few_still_tell_the_best_explanations():
         document["record_by_record"].append(one)
     sentence = told(document, data)
     assert "cannot show what; so far, to within the noise," in sentence
+    levels = [{**each, "accuracy": 1.2} for each in document["ladder"]]
+    assert "explains all tests" not in told({**document, "ladder": levels}, data)
     assert "fitted to each by itself, directional_damping to 6.7" in sentence
     assert "with fewer numbers, guide_friction to 6.7 % (guide friction.force 0.7, 0.7 N)" in sentence
 

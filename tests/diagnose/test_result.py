@@ -4,7 +4,7 @@ from math import exp, log
 
 import pytest
 
-from wedgesweep.diagnose.result.estimates import change, interval
+from wedgesweep.diagnose.result.estimates import change, interval, widen
 from wedgesweep.effects import EFFECTS
 
 QUANTITIES = [(name, q) for name, effect in EFFECTS.items() for q in effect.quantities if q.search]
@@ -33,3 +33,10 @@ def test_a_logarithm_and_an_angle():
     assert change(stiffness, 60.0, 60.0 * exp(0.1)) == pytest.approx(0.1)
     angle = next(q for _, q in QUANTITIES if q.angle)
     assert change(angle, 179.0, -179.0) == pytest.approx(2.0)
+
+
+def test_the_interval_of_a_cause_holds_those_that_other_explanations_find():
+    own, others = {"preload": {"force_N": {"value": 2.0, "ci95": [1.9, 2.1]}}}, {"stribeck": {}}
+    for low, high in (1.7, 1.8), (2.0, 2.3):
+        widen(own, others | {"preload": {"force_N": {"value": low, "ci95": [low, high]}}})
+    assert own["preload"]["force_N"] == {"value": 2.0, "ci95": [1.7, 2.3]}

@@ -11,7 +11,7 @@ from wedgesweep.diagnose.search import (
     Search,
     base_fit,
 )
-from wedgesweep.diagnose.transient.from_measurement import MOST, _spread, transient_data
+from wedgesweep.diagnose.transient.from_measurement import MOST_WINDOWS, _spread, transient_data
 from wedgesweep.effects import EFFECTS, merge
 from wedgesweep.measured import MeasuredError, read
 from wedgesweep.solvers import periodic
@@ -247,5 +247,5 @@ def test_a_test_with_numbers_of_its_own_is_the_same_beside_others_and_alone(tmp_
 def test_of_many_windows_forty_are_compared_but_of_each_record_one():
     for lengths in ([3], [30, 10], [300, 100, 1], [1] * 60):
         found = _spread([list(range(count)) for count in lengths])
-        assert abs(len(found) - max(min(sum(lengths), MOST), len(lengths))) <= 1  # shares are rounded
+        assert abs(len(found) - max(min(sum(lengths), MOST_WINDOWS), len(lengths))) <= 1  # shares are rounded
         assert found.count(0) == len(lengths)

@@ -11,7 +11,7 @@ from scipy.io import savemat, wavfile
 from tests import fixture_formats, fixture_measured
 from tests.command import invoke
 from tests.fixture_measured import MEASURED, csv_lines, lines, vibration
-from wedgesweep import measured
+from wedgesweep import measured, readers
 from wedgesweep.measured.build import shortened
 from wedgesweep.readers.survey import survey
 
@@ -175,6 +175,12 @@ def test_channels_in_a_struct(tmp_path, plain, name, inside):
         text = text.replace(f'column = "{column}"', f'column = "{inside}{column}"')
     path = fixture_measured.write(tmp_path, text)
     np.testing.assert_allclose(measured.read(path).tests[0].displacement, plain.displacement, rtol=1e-5)
+
+
+def test_an_object_that_lacks_a_key_lacks_a_sample(tmp_path):
+    (tmp_path / "late.jsonl").write_text('{"t": 0.0}\n\n{"t": 0.1, "v": 2.0}\n')
+    values = readers.read(tmp_path / "late.jsonl", ["v"]).channels["v"].values
+    np.testing.assert_array_equal(values, [np.nan, 2.0])
 
 
 def test_a_matrix_is_no_channel(tmp_path):

@@ -379,38 +379,36 @@ def by_accuracy(finding: Finding, levels: "Sequence[Level]") -> Finding:
     if finding.verdict != NONE:
         return finding
     sizes = [size for size in range(1, min(len(levels), MOST_NAMED + 1)) if _leads(levels, size)]
-    for whole in (True, False):
-        for size in sizes:
-            best, larger = levels[size].best, _surpassing(levels, size)
-            if (whole and larger) or any(not set(best.effects) <= set(each.effects) for each in larger):
-                continue
-            least = min((each.accuracy for each in larger), default=0.0)
-            leading = [each for each in larger if each.accuracy <= CLEAR * least]
-            numbers = _accuracies(levels, size)
-            numbers["larger"] = [{"effects": [*each.effects], "accuracy": each.accuracy} for each in leading]
-            fits = tuple(each.fit for each in leading)
-            return Finding(CONSISTENT, Reason.MORE_ACCURATE, best.explanation, (), numbers, fits)
-    return finding
+    larger = {size: _surpassing(levels, size) for size in sizes}
+    parts = [size for size in sizes if all(_holds(each, levels[size].best) for each in larger[size])]
+    if not parts:
+        return finding
+    size = min(parts, key=lambda size: (bool(larger[size]), size))
+    best, least = levels[size].best, min((each.accuracy for each in larger[size]), default=0.0)
+    leading = [each for each in larger[size] if each.accuracy <= CLEAR * least]
+    numbers: dict[str, Any] = {"accuracy": best.accuracy, "base": levels[0].best.accuracy}
+    numbers |= {"next_best": _next_best(levels, size), "held_out": best.held_out}
+    numbers["larger"] = [{"effects": [*each.effects], "accuracy": each.accuracy} for each in leading]
+    fits = tuple(each.fit for each in leading)
+    return Finding(CONSISTENT, Reason.MORE_ACCURATE, best.explanation, (), numbers, fits)
 
 
-def _accuracies(levels: "Sequence[Level]", size: int) -> dict[str, Any]:
-    """Accuracy of the best explanation of some size, of the base model, and of the next best one."""
-    best, smaller = levels[size].best, [level.best for level in levels[1:size]]
-    next_best = min((each.accuracy for each in (*levels[size].rivals, *smaller)), default=inf)
-    base = levels[0].best.accuracy
-    return {"accuracy": best.accuracy, "base": base, "next_best": next_best, "held_out": best.held_out}
+def _next_best(levels: "Sequence[Level]", size: int) -> float:
+    """The best accuracy but for that of the best explanation of some size, of those as large or smaller."""
+    others = (*levels[size].rivals, *(level.best for level in levels[1:size]))
+    return min((each.accuracy for each in others), default=inf)
 
 
 def _leads(levels: "Sequence[Level]", size: int) -> bool:
     """Whether one explanation is by far more accurate than all others with as many effects, or fewer."""
-    best, base, found = levels[size].best, levels[0].best, _accuracies(levels, size)
+    best, base = levels[size].best, levels[0].best
     # One that reaches the noise over all tests was refused for what it leaves in some of them.
     if best.accuracy == 0.0 or confounded(best.effects):
         return False
     # A base model that has no response predicts nothing.
     predicted, before = (inf if each.held_out is None else each.held_out for each in (best, base))
     return (
-        CLEAR * best.accuracy <= min(found["base"], found["next_best"], CLEAR * MOST_LEFT)
+        CLEAR * best.accuracy <= min(base.accuracy, _next_best(levels, size), CLEAR * MOST_LEFT)
         and predicted < inf
         and CLEAR * predicted <= before
     )
@@ -423,8 +421,13 @@ def _surpassing(levels: "Sequence[Level]", size: int) -> "list[Rated]":
         each
         for level in levels[size + 1 :]
         for each in level.rated
-        if each.accuracy * (CLEAR if set(best.effects) <= set(each.effects) else 1.0) < best.accuracy
+        if each.accuracy * (CLEAR if _holds(each, best) else 1.0) < best.accuracy
     ]
+
+
+def _holds(larger: "Rated", smaller: "Rated") -> bool:
+    """Whether an explanation has all effects of another one."""
+    return set(smaller.effects) <= set(larger.effects)
 
 
 def _unexplained(base: Explanation, best: Explanation | None) -> Finding:

@@ -184,7 +184,11 @@ def model(found: Numbers, forced: bool, turns: bool) -> str:
             *(['motion = "rotation"  # channels are angles and torques'] if turns else []),
             f"{number('mass_kg', found.mass)}  # {notes['mass']}",
             f"{number('spring_N_per_mm', 1e-3 * found.spring)}  # by the record",
-            *(['restoring_force = "pendulum"  # a sine explains the records better'] if found.swings else []),
+            *(
+                ['restoring_force = "pendulum"  # a sine explains the records better than a spring']
+                if found.swings
+                else []
+            ),
             f"{number('damping_N_s_per_m', found.damping)}  # {notes['damping']}",
             f"{number('normal_force_N', found.load)}  # {friction}",
             f'contact = "{"ground" if forced else "base"}"',

@@ -84,22 +84,21 @@ def _free(tests: Sequence[TestRecord], restoring: Restoring) -> tuple[float, Num
     A spring shows best in the frequency, which friction and noise hardly move.
     """
     moving = [_moving(test, 1.0, restoring) for test in tests]
-    acceleration, velocity, place, direction = np.vstack([each.parts for each in moving]).T
-    left, spring = _fitted([place, velocity, direction], -acceleration)
+    design = np.vstack([each.parts for each in moving])
+    left, (_, spring, _) = _fitted(design[:, 1:], -design[:, 0])
     if all(np.ptp(np.sign(each.parts[:, 1])) == 0.0 for each in moving):  # it never turns back: is there any?
-        if _fitted([velocity, direction], -acceleration)[0] * CLEARLY < left:
+        if _fitted(design[:, [1, 3]], -design[:, 0])[0] * CLEARLY < left:
             spring = 0.0
     elif restoring is _spring:
         spring = (2.0 * pi * float(np.median([_frequency(test) for test in tests]))) ** 2
     return left, Numbers(1.0, spring, 0.0, unseen=("mass", "damping"))
 
 
-def _fitted(parts: Sequence[np.ndarray], force: np.ndarray) -> tuple[float, float]:
-    """Share of a force (n,) that parts times factors >= 0 leave, and the factor of the first part."""
-    design = np.column_stack(parts)
+def _fitted(design: np.ndarray, force: np.ndarray) -> tuple[float, list[float]]:
+    """Share of a force (n,) that the parts (n, k) of it leave, and their factors, which are >= 0."""
     size = np.maximum(np.linalg.norm(design, axis=0), 1e-300)
     factors, left = nnls(design / size, force)
-    return float(left / max(np.linalg.norm(force), 1e-300)), float(factors[0] / size[0])
+    return float(left / max(np.linalg.norm(force), 1e-300)), (factors / size).tolist()
 
 
 def _frequency(test: TestRecord) -> float:
@@ -186,16 +185,16 @@ def _moving(test: TestRecord, load: float, restoring: Restoring) -> _Moving:
     A free motion is about where it ends, and its force is 0.
     """
     rate = test.sampling_rate
-    force = test.force if test.force is not None else test.input
-    free = force is None
+    force, zero = test.force if test.force is not None else test.input, 0.0
     if force is None:
-        force = np.zeros(next(iter(test.responses.values())).size)
+        free = next(iter(test.responses.values()))
+        force, zero = np.zeros(free.size), _end(free)
     low_pass = _low_pass(test)
     ends = slice(low_pass.settling, -low_pass.settling)
     if 3 * low_pass.settling > force.size:
         ends = slice(None)
     if test.displacement is not None:
-        place = low_pass(test.displacement - (_end(test.displacement) if free else 0.0))
+        place = low_pass(test.displacement - zero)
         velocity, acceleration = (derivative(place, rate, order) for order in (1, 2))
     elif test.velocity is not None:
         place, velocity = np.zeros(force.size), low_pass(test.velocity)
@@ -289,10 +288,7 @@ def _shaken(
         row = -np.column_stack([stretch[used], velocity[used], direction[used]]) / np.linalg.norm(value)
         rows += [row.real, row.imag]
         values += [value.real / np.linalg.norm(value), value.imag / np.linalg.norm(value)]
-    design, value = np.vstack(rows), np.concatenate(values)
-    size = np.maximum(np.linalg.norm(design, axis=0), 1e-300)
-    factors, left = nnls(design / size, value)
-    return float(left), (factors / size).tolist()
+    return _fitted(np.vstack(rows), np.concatenate(values))
 
 
 def _frequencies(signal: np.ndarray, rate: float) -> np.ndarray:

@@ -59,14 +59,17 @@ def wav(file: Path, wanted: Wanted) -> dict[str, Channel | None]:
 def json_text(file: Path, wanted: Wanted) -> dict[str, Channel | None]:
     """Lists and numbers by the keys that lead to them, as a.b; a list of objects is one list for each key."""
     text = file.read_text("utf-8-sig")
-    lines = [line for line in text.splitlines() if line.strip()]
-    opened = [json.loads(line) for line in lines] if file.suffix.lower() == ".jsonl" else json.loads(text)
+    if file.suffix.lower() == ".jsonl":
+        opened = [json.loads(line) for line in text.splitlines() if line.strip()]
+    else:
+        opened = json.loads(text)
     return {name or "list": Channel(_samples(each)) for name, each in _lists(opened)}
 
 
 def _lists(value: Any, path: str = "") -> Iterator[tuple[str, Any]]:
     if isinstance(value, list) and value and all(isinstance(each, dict) for each in value):
-        value = {key: [each.get(key) for each in value] for key in value[0]}
+        keys = dict.fromkeys(key for each in value for key in each)
+        value = {key: [each.get(key) for each in value] for key in keys}
     if not isinstance(value, dict):
         yield path, value
         return

@@ -14,7 +14,7 @@ from wedgesweep.readers import dialect as csv_dialect
 from wedgesweep.readers import text
 from wedgesweep.readers.dialect import Dialect, bare
 from wedgesweep.readers.table import Channel, Name, ReadError, Wanted, channel_of, matrix_of
-from wedgesweep.units import is_unit
+from wedgesweep.units import UNITS, is_unit
 
 Stated = Mapping[str, str]
 
@@ -32,7 +32,7 @@ NAMED_NUMBER = re.compile(
     r"\W*(?P<name>[A-Za-z][\w .]*?)\s*(?:[\[(](?P<before>[^\])]*)[\])])?\s*[:=,;\t]+\s*"
     rf"(?P<number>{PLAIN.pattern})\s*[\[(]?(?P<behind>[A-Za-z]*)[\])]?[\s,;]*"
 )
-LONGEST, FACTORS = 200, {"kHz": 1e3, "ms": 1e-3, "us": 1e-6}
+LONGEST, FACTORS = 200, {"kHz": 1e3, **UNITS["time"]}
 
 
 class Everything(Wanted):

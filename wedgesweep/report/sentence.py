@@ -101,7 +101,7 @@ def _most_accurate(result: DiagnosisResult) -> str:
     explain = phrases.explain(result.document["causes"])
     found = f"To {size} of the response {_causes(result)} {explain} all tests (without: {base}; {rivals})"
     noise = "" if why.get("larger") else ", though no explanation reaches the noise"
-    return f"{found}{noise}: {_improvement(result)}.{_larger(result)}"
+    return f"{found}{noise}: {_improvement(result)}{_larger(result)}."
 
 
 def _larger(result: DiagnosisResult) -> str:
@@ -114,8 +114,8 @@ def _larger(result: DiagnosisResult) -> str:
     ]
     if not others:
         return ""
-    less = f"More is missing: another effect beside {'it' if len(causes) == 1 else 'them'} leaves much less"
-    return f" {less}, {phrases.listing(others, 'or')}; the interval holds the value that each leads to."
+    less = f"more is missing: another effect beside {'it' if len(causes) == 1 else 'them'} leaves much less"
+    return f"; {less}, {phrases.listing(others, 'or')}, and the interval holds the value that each leads to"
 
 
 def _reservation(result: DiagnosisResult) -> str:

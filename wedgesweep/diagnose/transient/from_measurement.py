@@ -16,7 +16,7 @@ from wedgesweep.measured.declarations import MOTIONS
 # Parts of a record, in the loudest of which its motion must be larger than its noise.
 PARTS = 8
 # Windows that are compared: more of them take time, and tell little that is new.
-MOST = 40
+MOST_WINDOWS = 40
 
 
 def transient_data(measurement: Measurement) -> TransientData:
@@ -45,8 +45,8 @@ def transient_data(measurement: Measurement) -> TransientData:
 
 
 def _spread(by_test: list[list[RecordWindow]]) -> list[RecordWindow]:
-    """Of many windows MOST in all, at even distances in each record, but the first one of each at least."""
-    share = min(MOST / sum(map(len, by_test)), 1.0)
+    """At most MOST_WINDOWS, at even distances in each record, but the first one of each record at least."""
+    share = min(MOST_WINDOWS / sum(map(len, by_test)), 1.0)
     counts = [max(round(share * len(own)), 1) for own in by_test]
     return [
         own[place]
