@@ -463,28 +463,33 @@ def test_one_effect_that_is_far_more_accurate_than_all_others_is_the_cause(
 
 
 @pytest.mark.parametrize(
-    ("single", "pair", "rival", "three", "expected"),
+    ("single", "pair", "rival", "shared", "three", "expected"),
     [
-        (0.18, 0.007, 0.038, 0.005, "consistent-with"),
-        (0.18, 0.007, 0.015, 0.005, "none-of-mine"),
-        (0.012, 0.007, 0.038, 0.005, "none-of-mine"),
-        (0.18, 0.007, 0.038, 0.003, "consistent-with"),
+        (0.18, 0.007, 0.038, "guide_friction", 0.005, "consistent-with"),
+        (0.012, 0.007, 0.038, "guide_friction", 0.005, "none-of-mine"),
+        (0.18, 0.007, 0.038, "guide_friction", 0.003, "consistent-with"),
+        (0.18, 0.007, 0.015, "guide_friction", 0.005, "tied"),
+        (0.18, 0.007, 0.015, "guide_friction", 0.003, "tied"),
+        (0.18, 0.007, 0.015, "stribeck", 0.005, "none-of-mine"),
+        (0.033, 0.007, 0.015, "guide_friction", 0.005, "none-of-mine"),
     ],
 )
 def test_two_effects_that_are_far_more_accurate_than_all_others_are_the_cause(
-    single, pair, rival, three, expected
+    single, pair, rival, shared, three, expected
 ):
+    """Two pairs with one effect in common that both lead by far are tied."""
     unexplained = verdict_of(explained(5000.0), explained(1500.0, "presliding"))
     best = rated(pair, "guide_friction", "presliding", held_out=pair)
     levels = (
         Level((rated(0.39, held_out=0.4),)),
         Level((rated(single, "stribeck", held_out=0.2), rated(1.05 * single, "guide_friction"))),
-        Level((best, rated(rival, "guide_friction", "series_compliance"))),
+        Level((best, second := rated(rival, shared, "series_compliance"))),
         Level((rated(three, "guide_friction", "presliding", "channel_delay"),)),
     )
     found = verdict.by_accuracy(unexplained, levels)
     assert found.verdict == expected
-    assert (found.cause is best.explanation) == (expected == "consistent-with")
+    assert (found.cause is best.explanation) == (expected != "none-of-mine")
+    assert found.rivals == ((second.explanation,) if expected == "tied" else ())
     two_numbers = Level((rated(pair, "bolster_mass", "bolster_stiffness", held_out=pair),))
     assert verdict.by_accuracy(unexplained, (*levels[:2], two_numbers)).verdict == "none-of-mine"
 

@@ -373,61 +373,77 @@ def by_accuracy(finding: Finding, levels: "Sequence[Level]") -> Finding:
 
     It has one effect, or two where no single one leads. It must be more accurate than the base model and all
     others with as many effects, or fewer, by the factor CLEAR, and beat the base model on held-out tests by
-    that factor as well. No larger one without it may be more accurate. One with it may be by that factor if
-    nothing else leads: then it is a part of what is missing, and its numbers are as uncertain as the rest.
+    that factor as well. Two that share an effect and each lead all others are tied. No larger one without
+    them may be more accurate. One with either may be by that factor if nothing else leads: then it is a part
+    of what is missing, and its numbers are as uncertain as the rest.
     """
     if finding.verdict != NONE:
         return finding
-    sizes = [size for size in range(1, min(len(levels), MOST_NAMED + 1)) if _leads(levels, size)]
-    larger = {size: _surpassing(levels, size) for size in sizes}
-    parts = [size for size in sizes if all(_holds(each, levels[size].best) for each in larger[size])]
+    leading = {size: _leading(levels, size) for size in range(1, min(len(levels), MOST_NAMED + 1))}
+    larger = {size: _surpassing(levels, size, found) for size, found in leading.items() if found}
+    parts = [size for size in larger if all(_holds(each, leading[size]) for each in larger[size])]
     if not parts:
         return finding
     size = min(parts, key=lambda size: (bool(larger[size]), size))
-    best, least = levels[size].best, min((each.accuracy for each in larger[size]), default=0.0)
-    leading = [each for each in larger[size] if each.accuracy <= CLEAR * least]
+    best, *rivals = leading[size]
+    least = min((each.accuracy for each in larger[size]), default=0.0)
+    close = [each for each in larger[size] if each.accuracy <= CLEAR * least]
     numbers: dict[str, Any] = {"accuracy": best.accuracy, "base": levels[0].best.accuracy}
-    numbers |= {"next_best": _next_best(levels, size), "held_out": best.held_out}
-    numbers["larger"] = [{"effects": [*each.effects], "accuracy": each.accuracy} for each in leading]
-    fits = tuple(each.fit for each in leading)
-    return Finding(CONSISTENT, Reason.MORE_ACCURATE, best.explanation, (), numbers, fits)
+    numbers |= {"next_best": _next_best(levels, size, leading[size]), "held_out": best.held_out}
+    numbers |= {"rivals": _accuracies(rivals), "larger": _accuracies(close)}
+    tied, fits = tuple(each.explanation for each in rivals), tuple(each.fit for each in close)
+    return Finding(TIED if tied else CONSISTENT, Reason.MORE_ACCURATE, best.explanation, tied, numbers, fits)
 
 
-def _next_best(levels: "Sequence[Level]", size: int) -> float:
-    """The best accuracy but for that of the best explanation of some size, of those as large or smaller."""
-    others = (*levels[size].rivals, *(level.best for level in levels[1:size]))
+def _accuracies(rated: "Sequence[Rated]") -> list[dict[str, Any]]:
+    return [{"effects": [*each.effects], "accuracy": each.accuracy} for each in rated]
+
+
+def _next_best(levels: "Sequence[Level]", size: int, leading: "Sequence[Rated]") -> float:
+    """The best accuracy but for that of the leading explanations, of those of some size or smaller."""
+    others = (each for level in levels[1 : size + 1] for each in level.rated if each not in leading)
     return min((each.accuracy for each in others), default=inf)
 
 
-def _leads(levels: "Sequence[Level]", size: int) -> bool:
-    """Whether one explanation is by far more accurate than all others with as many effects, or fewer."""
-    best, base = levels[size].best, levels[0].best
+def _leading(levels: "Sequence[Level]", size: int) -> "Sequence[Rated]":
+    """The explanation of some size that leads, two that share an effect and lead the rest, or none."""
+    first, *rest = levels[size].rated
+    second = [each for each in rest[:1] if set(each.effects) & set(first.effects)]
+    for found in ([first], [first, *second]):
+        if _lead(levels, size, found):
+            return found
+    return ()
+
+
+def _lead(levels: "Sequence[Level]", size: int, leading: "Sequence[Rated]") -> bool:
+    """Whether explanations are by far more accurate than all others with as many effects, or fewer."""
+    (best, *_), base, worst = leading, levels[0].best, max(each.accuracy for each in leading)
     # One that reaches the noise over all tests was refused for what it leaves in some of them.
-    if best.accuracy == 0.0 or confounded(best.effects):
+    if best.accuracy == 0.0 or any(confounded(each.effects) for each in leading):
         return False
     # A base model that has no response predicts nothing.
     predicted, before = (inf if each.held_out is None else each.held_out for each in (best, base))
     return (
-        CLEAR * best.accuracy <= min(base.accuracy, _next_best(levels, size), CLEAR * MOST_LEFT)
+        CLEAR * worst <= min(base.accuracy, _next_best(levels, size, leading), CLEAR * MOST_LEFT)
         and predicted < inf
         and CLEAR * predicted <= before
     )
 
 
-def _surpassing(levels: "Sequence[Level]", size: int) -> "list[Rated]":
-    """Larger explanations that are more accurate than the best one of some size, by CLEAR if they hold it."""
-    best = levels[size].best
+def _surpassing(levels: "Sequence[Level]", size: int, leading: "Sequence[Rated]") -> "list[Rated]":
+    """Larger explanations that are more accurate than the leading ones, by CLEAR if they hold one of them."""
+    best = leading[0].accuracy
     return [
         each
         for level in levels[size + 1 :]
         for each in level.rated
-        if each.accuracy * (CLEAR if _holds(each, best) else 1.0) < best.accuracy
+        if each.accuracy * (CLEAR if _holds(each, leading) else 1.0) < best
     ]
 
 
-def _holds(larger: "Rated", smaller: "Rated") -> bool:
-    """Whether an explanation has all effects of another one."""
-    return set(smaller.effects) <= set(larger.effects)
+def _holds(larger: "Rated", leading: "Sequence[Rated]") -> bool:
+    """Whether an explanation has all effects of one of the leading ones."""
+    return any(set(each.effects) <= set(larger.effects) for each in leading)
 
 
 def _unexplained(base: Explanation, best: Explanation | None) -> Finding:

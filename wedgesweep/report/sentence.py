@@ -99,7 +99,13 @@ def _most_accurate(result: DiagnosisResult) -> str:
     size, base, held_out = (phrases.accuracy(why[key]) for key in ("accuracy", "base", "held_out"))
     rivals = f"next best: {phrases.accuracy(why['next_best'])}; held-out tests: {held_out}"
     explain = phrases.explain(result.document["causes"])
-    found = f"To {size} of the response {_causes(result)} {explain} all tests (without: {base}; {rivals})"
+    tied = "".join(
+        f", or {phrases.combination(each['effects'])} to {phrases.accuracy(each['accuracy'])}"
+        for each in why.get("rivals", [])
+    )
+    found = (
+        f"To {size} of the response {_causes(result)} {explain} all tests{tied} (without: {base}; {rivals})"
+    )
     noise = "" if why.get("larger") else ", though no explanation reaches the noise"
     return f"{found}{noise}: {_improvement(result)}{_larger(result)}."
 
@@ -154,6 +160,8 @@ def _reservation(result: DiagnosisResult) -> str:
 
 
 def _tied(result: DiagnosisResult) -> str:
+    if result.reason is Reason.MORE_ACCURATE:
+        return _most_accurate(result)
     rivals = [_rival(rival, result.document) for rival in result.document["rivals"]]
     return (
         f"{_number(1 + len(rivals))} explanations fit the tests equally well: {_causes(result)}, or "
