@@ -16,14 +16,19 @@ def counted(count: int, noun: str, plural: str = "") -> str:
 
 
 def case(
-    law: str, beta: float, amplitude: float, numbers: Iterable[tuple[str, float]] = (), unit: str = "m"
+    law: str, beta: float, amplitude: float, numbers: Iterable[tuple[str, float | str]] = (), unit: str = "m"
 ) -> str:
     """A case in words; its amplitude is in m or N, or a scale where ``unit`` is empty."""
-    more = "".join(f", {key} {value:.6g}" for key, value in numbers)
+    more = "".join(f", {key} {setting(value)}" for key, value in numbers)
     if not unit:
         return f"{law}, scale {amplitude:.6g}{more}"
     size = f"{amplitude * 1e3:.6g} mm" if unit == "m" else f"{amplitude:.6g} {unit}"
     return f"{law}, beta {beta:.6g}, amplitude {size}{more}"
+
+
+def setting(value: float | str, digits: int = 6) -> str:
+    """Write a number of a model, or a name that stands in its place."""
+    return value if isinstance(value, str) else f"{value:.{digits}g}"
 
 
 def number(value: float | None, digits: int = 3) -> str:

@@ -28,6 +28,8 @@ ENDINGS = {
     "_N": ("_N_m", 1.0),
 }
 LENGTH = "_mm"
+# Key of a distribution that has no unit: the standard deviation of a logarithm.
+RELATIVE = "sigma"
 # Units in texts, and what a rotation has in their place.
 UNITS = {
     **{"mm/s": "mrad/s", "mm": "mrad", "µm": "µrad", "m/s²": "rad/s²", "m/s^2": "rad/s^2", "m/s": "rad/s"},
@@ -42,7 +44,9 @@ WORDS = {
 }
 _WORD = re.compile(rf"(?<![\w.-])(?:{'|'.join(sorted(WORDS, key=len)[::-1])})(?![\w-]|\.\w)")
 _KEY = re.compile(rf"\b(?:{'|'.join([*KEYS, *(rf'[a-z_]+{ending}' for ending in ENDINGS)])})\b")
-_UNITS = "|".join(sorted(map(re.escape, UNITS), key=len)[::-1])
+# Units of keys of a rotation, as CF writes them; they and those above stay what they are.
+_OWN = ("kg m2", "N m rad-1", "N m s rad-1", "N m s2 rad-2", "N m rad-3", *UNITS.values())
+_UNITS = "|".join(sorted(map(re.escape, (*UNITS, *_OWN)), key=len)[::-1])
 _UNIT = re.compile(rf"(?<=[\[\d ])(?:{_UNITS})(?=[\],;. ]|$)")
 _UNIT_OF_SYMBOL = re.compile(rf"(?<=\()(?:{_UNITS})(?=\))")
 
@@ -63,6 +67,13 @@ def turned_key(key: str) -> tuple[str, float]:
     return key, 1.0
 
 
+def turned_path(key: str) -> tuple[str, float]:
+    """A dotted key in a rotation, and its number over that of a translation."""
+    table, dot, name = key.rpartition(".")
+    name, factor = turned_key(name)
+    return f"{table}{dot}{name}", factor
+
+
 def written(document: Any) -> Any:
     """A document of a translation with the keys and numbers of a rotation; texts name its keys, too."""
     if isinstance(document, list):
@@ -73,9 +84,7 @@ def written(document: Any) -> Any:
         return document
     turned = {}
     for key, value in document.items():
-        effect, dot, name = key.rpartition(".")
-        name, factor = turned_key(name)
-        renamed = f"{effect}{dot}{name}"
+        renamed, factor = turned_path(key)
         turned[renamed] = scaled(value, factor) if renamed != key else written(value)
     return turned
 
@@ -85,7 +94,7 @@ def scaled(value: Any, factor: float) -> Any:
     if isinstance(value, list):
         return [scaled(each, factor) for each in value]
     if isinstance(value, Mapping):
-        return {key: scaled(each, factor) for key, each in value.items()}
+        return {key: each if key == RELATIVE else scaled(each, factor) for key, each in value.items()}
     if factor == 1.0 or isinstance(value, bool) or not isinstance(value, int | float):
         return value
     return float(f"{value * factor:.15g}")
@@ -100,7 +109,7 @@ def in_units(words: str) -> str:
     """A text in the units of a rotation."""
     if words in UNITS:
         return UNITS[words]
-    return _UNIT.sub(lambda match: UNITS[match.group()], words)
+    return _UNIT.sub(lambda match: UNITS.get(match.group(), match.group()), words)
 
 
 def prose(words: str) -> str:
@@ -109,7 +118,7 @@ def prose(words: str) -> str:
     A unit by itself in brackets, as the meaning of a symbol has it, is that of a rotation, too.
     """
     turned = _WORD.sub(lambda match: WORDS[match.group()], words)
-    return _UNIT_OF_SYMBOL.sub(lambda match: UNITS[match.group()], turned)
+    return _UNIT_OF_SYMBOL.sub(lambda match: UNITS.get(match.group(), match.group()), turned)
 
 
 def with_units(dataset: "xr.Dataset") -> "xr.Dataset":

@@ -1,5 +1,6 @@
 """Any number of the model as an axis: one dimension each, cases known by their numbers, sweeps that grow."""
 
+from datetime import UTC, datetime
 from itertools import product
 
 import numpy as np
@@ -11,7 +12,7 @@ from wedgesweep import config, figures
 from wedgesweep.config.physics import breakaway
 from wedgesweep.errors import MismatchError
 from wedgesweep.figures import models
-from wedgesweep.sweep import dataset, outcomes, unfinished
+from wedgesweep.sweep import dataset, outcomes, unfinished, variables
 from wedgesweep.sweep.journal import Journal
 from wedgesweep.sweep.run import CaseFailedError, Sweep
 
@@ -316,3 +317,63 @@ def test_datasets_of_the_same_frequencies_join(tmp_path):
     joined = xr.concat(parts, "bolster_mass", join="exact", coords="different", compat="equals")
     assert joined["frequency"].values.tolist() == [10.0, 20.0]
     assert joined["amplitude_ratio"].notnull().all()
+
+
+def test_kinds_of_damping_are_an_axis_of_names(tmp_path):
+    model = "[suspension]\nwedge_preload_N = 4.0\n"
+    axes = '[sweep.axes]\nsuspension.damping = ["constant", "variable"]\n'
+    made = Sweep(config.parse(model + SWEEP + axes + SOLVER), tmp_path / "axes.nc")
+    made.run(n_jobs=1)
+    ds = xr.load_dataset(made.out)
+    for damping in ("constant", "variable"):
+        alone = Sweep(config.parse(f'{model}damping = "{damping}"\n{SWEEP}{SOLVER}'), None).run_here()
+        here = ds.sel(damping=damping)["amplitude_ratio"].values
+        assert here.tolist() == alone["amplitude_ratio"].values.tolist()
+    assert "suspension.damping constant" in made.config.case_in_words(0)
+    assert (
+        figures.draw(ds, "lines", color="suspension.damping").legends[0].get_texts()[0].get_text()
+        == "constant"
+    )
+    with pytest.raises(ValueError, match="no foo; the dataset has constant, variable"):
+        figures.draw(ds, "lines", at={"damping": "foo"})
+    (fault,) = small_sweep.faults(SWEEP + axes + SOLVER)
+    assert "suspension.damping = constant: suspension.wedge_preload_N" in fault
+
+
+TURNING = """
+[oscillator]
+motion = "rotation"
+spring_N_m_per_rad = 5.0
+friction_N_m = 0.2
+[effects.end_stop]
+stiffness_N_m_per_rad = 3.0
+[sweep]
+friction_law = "coulomb"
+frequency_hz = [2.0, 3.0]
+amplitude_rad = 0.1
+[sweep.axes]
+oscillator.inertia_kg_m2 = [0.01, 0.02]
+effects.end_stop.clearance_deg = [9, 18]
+zip = ["oscillator.inertia_kg_m2", "effects.end_stop.clearance_deg"]
+"""
+
+
+def test_a_rotation_has_axes_with_its_own_keys(tmp_path):
+    read = config.parse(TURNING + SOLVER)
+    assert config.parse(read.to_toml()) == read
+    made = Sweep(read, tmp_path / "turn.nc")
+    ds = made.assembled(variables.blank(made.dtype, np.arange(4)), datetime(2026, 1, 1, tzinfo=UTC))
+    assert ds["status"].dims == ("friction_law", "inertia_kg_m2", "frequency", "amplitude")
+    assert ds["end_stop_clearance_rad"].values == pytest.approx(np.radians([9.0, 18.0]))
+    units = [ds[name].attrs["units"] for name in ("inertia_kg_m2", "end_stop_clearance_rad")]
+    assert units == ["kg m2", "rad"]
+    assert "0.1 rad, oscillator.inertia_kg_m2 0.01" in read.case_in_words(0)
+    for place, (inertia, clearance) in enumerate(((0.01, 9.0), (0.02, 18.0))):
+        given = TURNING.partition("[sweep.axes]")[0]
+        given = given.replace("motion", f"inertia_kg_m2 = {inertia}\nmotion")
+        alone = config.parse(given.replace("stiffness", f"clearance_deg = {clearance}\nstiffness"))
+        assert alone.records().tobytes() == read.records(np.array([0, 1]) + 2 * place).tobytes()
+        model = models.of_one(ds, {"oscillator.inertia_kg_m2": inertia})
+        assert model.attrs["omega_n"] == pytest.approx(np.sqrt(5.0 / inertia))
+    both = TURNING.replace("zip", "effects.end_stop.clearance_rad = [0.1, 0.2]\n#")
+    assert "exclude each other" in small_sweep.faults(both + SOLVER)[-1]

@@ -199,8 +199,10 @@ def test_every_figure_draws_and_has_units(folder, kind, name):
 def test_figures_of_sines_are_not_offered(folder):
     invoke("run", "swept.toml", "--n-jobs", 1)
     told = invoke("plot", "all", "swept.nc", "-o", "drawn")
-    assert told.count("wrote") == 3
-    assert "there are backbone, envelope, loop, ring-down" in invoke("plot", "stick-map", "swept.nc", code=2)
+    assert told.count("wrote") == 4
+    assert "there are backbone, envelope, loop, ring-down, lines, map" in invoke(
+        "plot", "stick-map", "swept.nc", code=2
+    )
     assert "the dataset has no beta" in invoke("plot", "loop", "swept.nc", "--beta", "1", code=2)
     assert "6 = 2 friction laws x 3 scales" in invoke("check", "swept.toml")
 
@@ -307,3 +309,57 @@ def test_a_config_with_an_input_reads_back(folder):
     for name in ("release", "record", "swept"):
         read = config.load(f"{name}.toml")
         assert config.parse(read.to_toml()) == read
+
+
+AXES = "[sweep.axes]\ninput.start_hz = [1.0, 2.0]\ninput.stop_hz = [4.0, 6.0]\n"
+
+
+def of_band(start, stop):
+    """A sweep like that of the axes, of one band."""
+    own = SWEPT.replace("start_hz = 1.0", f"start_hz = {start}").replace("stop_hz = 6.0", f"stop_hz = {stop}")
+    rate = "sampling_hz = 192.0\n"  # what the highest frequency of the axes needs
+    return Sweep(config.parse(HEAD + own + rate + TAIL), None).run_here()
+
+
+def test_each_case_of_a_varied_input_is_that_of_its_own_config(tmp_path):
+    given = SWEPT.replace("stop_hz = 6.0", "stop_hz = 4.0")
+    made = Sweep(config.parse(HEAD + given + TAIL.replace("[solver]", f"{AXES}[solver]")), tmp_path / "a.nc")
+    ds = made.run(n_jobs=1)
+    assert ds["input"].dims == ds["input_frequency"].dims == ("input_start_hz", "input_stop_hz", "time")
+    assert ds["input_start_hz"].attrs["units"] == "Hz"
+    assert np.array_equal(made.run_here()["displacement"].values, ds["displacement"].values)
+    for start, stop in ((1.0, 4.0), (2.0, 6.0)):
+        here, alone = ds.sel(input_start_hz=start, input_stop_hz=stop), of_band(start, stop)
+        for name in ("displacement", "dissipated_energy", "input", "input_frequency"):
+            assert np.array_equal(here[name].values, alone[name].values), name
+    grown = Sweep(config.parse(made.config.to_toml().replace("[4.0, 6.0]", "[4.0, 5.0, 6.0]")), made.out)
+    parts = []
+    grown.run(n_jobs=1, progress=lambda records, total: parts.append(len(records)))
+    assert (parts[0], sum(parts)) == (24, 36)
+    figures.draw(xr.load_dataset(made.out), "envelope", at={"input.start_hz": 2.0}).draw_without_rendering()
+    figures.draw(xr.load_dataset(made.out), "map", variable="peak_velocity").draw_without_rendering()
+
+
+@pytest.mark.parametrize(
+    ("axis", "told"),
+    [
+        ("input.duration_s = [1.0, 2.0]", "share their times"),
+        ("input.rms_mm = [1.0, 2.0]", "input.rms_mm: unknown key"),
+        ("input.amplitude_mm = [1.0, 2.0]", "exclude each other"),
+        ("input.fade_s = [0.1, 3.0]", "input.fade_s = 3: input.fade_s: 3 is more than half"),
+    ],
+)
+def test_inputs_that_cannot_vary_are_told(axis, told):
+    fault = faults(HEAD + SWEPT + TAIL.replace("[solver]", f"[sweep.axes]\n{axis}\n[solver]"))[-1]
+    assert told in fault
+
+
+def test_seeds_are_an_axis_of_random_motion():
+    axes = "[sweep.axes]\ninput.seed = [3, 1]\n"
+    band = "start_hz = 1.0\nstop_hz = 4.0\n"
+    read = config.parse(HEAD + RANDOM + band + TAIL.replace("[solver]", f"{axes}[solver]"))
+    runs = read.transients(np.arange(read.sweep.count))
+    alone = config.parse(HEAD + RANDOM + band + "seed = 1\n" + TAIL).solver.transient
+    t = np.linspace(0.0, 2.0, 50)
+    assert np.array_equal(runs[3].sampled(t), alone.sampled(t))
+    assert not np.array_equal(runs[0].sampled(t), alone.sampled(t))

@@ -69,7 +69,7 @@ def case(
         raise Failure(f"{config_path}: its input is {wanted}")
     if given.turns and amplitude is not None:
         amplitude *= 1e3  # a rotation's rad is a length of 1 m
-    settings = single_case(given, amplitude, beta, frequency, law, force, _numbers(at))
+    settings = single_case(given, amplitude, beta, frequency, law, force, axis_values(at))
     print_remark(settings)
     stem = output or Path(_name(config_path, settings))
     _require_no_sweep(_with_suffix(stem, ".nc"))
@@ -83,16 +83,6 @@ def case(
         click.get_current_context().exit(SOME_FAILED)
     _print_remarks(ds)
     _write(ds, stem)
-
-
-def _numbers(at: tuple[str, ...]) -> dict[str, float]:
-    """Numbers of the model, by dotted key; their names are checked with the config."""
-    numbers = {name: value for name, value in axis_values(at).items() if isinstance(value, float)}
-    if len(numbers) < len(at):
-        raise click.UsageError(
-            "--at: a number is needed after each key, as in --at suspension.wedge_angle_deg=30"
-        )
-    return numbers
 
 
 def _print_remarks(ds: "xr.Dataset") -> None:

@@ -28,7 +28,7 @@ ALL = "all"
 # Figures by the data that they draw.
 FAMILIES = {
     "For a dataset, KIND is one of": figures.FIGURES,
-    "For a dataset whose input does not repeat ([input] in its config), one of": transient.FIGURES,
+    "For a dataset of an [input], which does not repeat, lines, map or one of": transient.FIGURES,
     "For a dataset of samples ([sweep.sample] in its config), one of": samples.FIGURES,
     "For the directory of a diagnosis, one of": diagnosis.FIGURES,
     "For a measured.toml": measured.FIGURES,

@@ -7,7 +7,7 @@ from math import isnan
 from pathlib import Path
 from typing import Any
 
-from wedgesweep import __version__, rotation, toml
+from wedgesweep import __version__, formatting, rotation, toml
 from wedgesweep.config import commented, force_table, sample
 from wedgesweep.config.axes import ZIP, corners, is_model_key, model_keys, with_nominal, with_numbers
 from wedgesweep.config.cases import NATURAL, AmplitudeUnit, Case, Cases, natural_frequency
@@ -59,17 +59,17 @@ def from_document(given: Mapping[str, Any], source: str = "<config>", directory:
     given = force_table.expanded(given, directory, problems)
     if rotation.turns(given):
         turned, table = turned_root("input" in given)
-        document = turned.back(table.read(given, "", problems))
+        read = table.read(with_nominal(given), "", problems)
+        document = turned.back(read)
         problems += map(rotation.text, _of_other_keys(problems, contradictions(document)))
+        if not problems and len(_varied(document)) < len(_varied(read)):
+            problems.append("sweep: an angle varies in rad and in deg; keep one of both keys")
     else:
         document = root("input" in given).read(with_nominal(given), "", problems)
         problems += _of_other_keys(problems, contradictions(document))
-    if not problems and rotation.turns(given) and _varied(document):
-        problems.append(
-            "sweep: numbers of an oscillator that turns do not vary in a sweep; run a config for each"
-        )
+    told = rotation.text if rotation.turns(given) else str
     if not problems:
-        problems += _missing_in_cases(document)
+        problems += map(told, _missing_in_cases(document))
     if not problems:
         problems += _of_varied(document)
     recorded = document.get("input", {})
@@ -114,8 +114,10 @@ def _of_varied(document: Mapping[str, Any]) -> Iterator[str]:
     """Contradictions between numbers that the sweep varies, or of one of them with the rest."""
     for numbers in corners(_varied(document)):
         for problem in contradictions(with_numbers(document, numbers)):
-            where = ", ".join(f"{key} = {value:.6g}" for key, value in numbers.items())
-            yield f"sweep, at {where}: {problem}"
+            turned = rotation.turns(document)
+            own, told = (rotation.written(numbers), rotation.text) if turned else (numbers, str)
+            where = ", ".join(f"{key} = {formatting.setting(value)}" for key, value in own.items())
+            yield f"sweep, at {where}: {told(problem)}"
             return
 
 

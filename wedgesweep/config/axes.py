@@ -1,26 +1,41 @@
-"""Numbers of the model that a sweep varies: dotted keys such as "suspension.wedge_angle_deg"."""
+"""Numbers of model and input that a sweep varies: dotted keys such as "suspension.wedge_angle_deg"."""
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import product
-from typing import Any
+from typing import Any, TypeAlias
 
-from wedgesweep.config.keys import Key, Number, Whole
-from wedgesweep.config.series import Numbers, Series
+from wedgesweep.config.inputs import ByKind
+from wedgesweep.config.keys import Choice, Key, Number, Whole
+from wedgesweep.config.series import Numbers, Series, Several
 from wedgesweep.config.tables import Table
 from wedgesweep.hints import hint, show
+from wedgesweep.systems.suspension.parameters import DAMPING
 
+# What an axis holds the values of.
+Varied: TypeAlias = Number | Choice
 ZIP = "zip"
 NO_NUMBER = "no number of a model that may vary"
 # Tables whose numbers may vary; those whose names the dimensions of a dataset leave out.
-TABLES = ("suspension", "oscillator", "friction", "effects")
+INPUT = "input"
+TABLES = ("suspension", "oscillator", "friction", "effects", INPUT)
+# Choices that vary, by key; elsewhere than in configs and datasets a name is its place in the list.
+CHOICES = {"suspension.damping": DAMPING}
+# Keys that do not vary, and why.
+SHARED_TIMES = (
+    "all cases of a dataset share their times, so that it does not vary; run a config for each value"
+)
+FIXED = {
+    **dict.fromkeys((f"{INPUT}.duration_s", f"{INPUT}.sampling_hz"), SHARED_TIMES),
+    "suspension.joints": "datasets of both kinds have different variables; run a config for each",
+}
 # A tolerance, and the numbers of a range or a distribution that stand for it.
 TOLERANCE = re.compile(r"\s*([-+.\deE]+?)\s*(?:\+-|±)\s*([.\deE]+)\s*(%?)\s*")
 MIDDLES = ("start", "mean", "median", "low")
 LEFT_OUT = ("suspension", "oscillator", "effects")
 # Tables that hold numbers without a default.
-WITHOUT_DEFAULT = ("oscillator", "effects")
+WITHOUT_DEFAULT = ("oscillator", "effects", INPUT)
 # More combinations of extreme values than this are not checked for contradictions.
 MOST_CORNERS = 4096
 
@@ -41,19 +56,32 @@ def dimension(key: str) -> str:
     return (rest if table in LEFT_OUT else key).replace(".", "_")
 
 
-def numbers_of(tables: Table) -> dict[str, Number]:
-    """All numbers that may vary, by dotted key."""
-    return dict(_numbers(tables, ""))
+def coded(key: str, value: float | str) -> float | str:
+    """A value as cases hold it."""
+    return float(CHOICES[key].index(value)) if isinstance(value, str) else value
 
 
-def _numbers(table: Table, path: str) -> Iterator[tuple[str, Number]]:
+def named(key: str, value: float) -> float | str:
+    """A value as a config holds it."""
+    return CHOICES[key][int(value)] if key in CHOICES else value
+
+
+def numbers_of(tables: Table) -> dict[str, Varied]:
+    """All numbers that may vary, and choices, by dotted key."""
+    return {key: each for key, each in _numbers(tables, "") if key not in FIXED}
+
+
+def _numbers(table: Table, path: str) -> Iterator[tuple[str, Varied]]:
     for key in table.keys.values():
         if not path and key.key not in TABLES:
             continue
-        if isinstance(key, Number) and not isinstance(key, Whole):
+        if isinstance(key, Number) or (isinstance(key, Choice) and f"{path}{key.key}" in CHOICES):
             yield f"{path}{key.key}", key
         elif isinstance(key, Table):
             yield from _numbers(key, f"{path}{key.key}.")
+        elif isinstance(key, ByKind):
+            for kind in key.kinds.values():
+                yield from _numbers(kind, f"{path}{key.key}.")
 
 
 def flat(given: Mapping[str, Any]) -> dict[str, Any]:
@@ -77,7 +105,7 @@ def given_number(document: Mapping[str, Any], key: str) -> float:
     return float(place)
 
 
-def with_numbers(document: Mapping[str, Any], numbers: Mapping[str, float]) -> dict[str, Any]:
+def with_numbers(document: Mapping[str, Any], numbers: Mapping[str, float | str]) -> dict[str, Any]:
     """A document with other numbers, by dotted key; tables that are not there are made."""
     changed = dict(document)
     for key, number in numbers.items():
@@ -138,7 +166,7 @@ def _stands(given: Mapping[str, Any], key: str) -> bool:
 class WithNumbers(Table):
     """A table that also has dotted keys of ``numbers`` of the model, each with a value of some kind."""
 
-    numbers: Mapping[str, Number]
+    numbers: Mapping[str, Varied]
 
     def read(self, value: Any, path: str, problems: list[str]) -> dict[str, Any]:
         if not isinstance(value, dict):
@@ -150,17 +178,17 @@ class WithNumbers(Table):
                 at = f'{path}."{key}"'
                 read[key] = self.read_number(self.numbers[key], given[key], at, problems, read)
             else:
-                near = hint(key, _near(key, self.numbers))
-                problems.append(f"{path}.{key}: {NO_NUMBER}; {near}")
+                fault = f"{NO_NUMBER}; {hint(key, _near(key, self.numbers))}"
+                problems.append(f"{path}.{key}: {FIXED.get(key, fault)}")
         return {key: each for key, each in read.items() if each is not None}
 
     def read_number(
-        self, number: Number, value: Any, path: str, problems: list[str], read: Mapping[str, Any]
+        self, number: Varied, value: Any, path: str, problems: list[str], read: Mapping[str, Any]
     ) -> Any:
         """Check the value of a dotted key; ``read`` holds the other keys."""
         return number.read(value, path, problems)
 
-    def number_shape(self, number: Number) -> dict[str, Any]:
+    def number_shape(self, number: Varied) -> dict[str, Any]:
         """JSON schema of the value of a dotted key."""
         return number.shape()
 
@@ -180,7 +208,7 @@ class WithNumbers(Table):
         return own
 
 
-def _near(key: str, numbers: Mapping[str, Number]) -> list[str]:
+def _near(key: str, numbers: Mapping[str, Varied]) -> list[str]:
     """The numbers of the same table, of which there are few enough to list."""
     table = key.split(".")[0]
     return [name for name in numbers if name.startswith(f"{table}.")] or [f"{name}.KEY" for name in TABLES]
@@ -232,9 +260,9 @@ class Axes(WithNumbers):
         return read
 
     def read_number(
-        self, number: Number, value: Any, path: str, problems: list[str], read: Mapping[str, Any]
+        self, number: Varied, value: Any, path: str, problems: list[str], read: Mapping[str, Any]
     ) -> Any:
-        series = Series(key=number.key, meaning="", item=number)
+        series = _series(number)
         # What goes together with another axis need not increase.
         follows = any(path.endswith(f'"{key}"') for group in read.get(ZIP, ()) for key in group[1:])
         kind = (
@@ -244,15 +272,27 @@ class Axes(WithNumbers):
         )
         return kind.read(value, path, problems)
 
-    def number_shape(self, number: Number) -> dict[str, Any]:
-        return Series(key=number.key, meaning="", item=number).shape()
+    def number_shape(self, number: Varied) -> dict[str, Any]:
+        return _series(number).shape()
 
 
-def corners(values: Mapping[str, Any]) -> Iterator[dict[str, float]]:
+def _series(item: Varied) -> Several:
+    """The values of an axis; names and whole numbers are listed."""
+    if isinstance(item, Choice | Whole):
+        return Several(key=item.key, meaning="", item=item)
+    return Series(key=item.key, meaning="", item=item)
+
+
+def corners(values: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
     """Each value of each key alone, where they are few, and all combinations of smallest and largest ones."""
     for key, own in values.items():
         if len(own) <= MOST_CORNERS:
-            yield from ({key: float(value)} for value in own)
-    ends = [(float(min(own)), float(max(own))) for own in values.values()]
+            yield from ({key: _plain(value)} for value in own)
+    ends = [(_plain(min(own)), _plain(max(own))) for own in values.values()]
     if 2 ** len(ends) <= MOST_CORNERS:
         yield from (dict(zip(values, each, strict=True)) for each in product(*ends))
+
+
+def _plain(value: Any) -> float | int | str:
+    """A value as a config holds it, also one that was drawn."""
+    return value if isinstance(value, int | str) else float(value)

@@ -12,8 +12,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from wedgesweep import rotation
 from wedgesweep.config import sample
-from wedgesweep.config.axes import ZIP, dimension, given_number, is_model_key, model_keys
+from wedgesweep.config.axes import INPUT, ZIP, coded, dimension, given_number, is_model_key, model_keys, named
 
 LAW, BETA, FREQUENCY, AMPLITUDE, SCALE = "friction_law", "beta", "frequency", "amplitude", "scale"
 SAMPLE = "sample"
@@ -35,7 +36,7 @@ class Case(NamedTuple):
     law: str
     beta: float
     amplitude: float
-    numbers: tuple[tuple[str, float], ...] = ()
+    numbers: tuple[tuple[str, float | str], ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,6 +89,11 @@ class Cases:
     def keys(self) -> tuple[str, ...]:
         """Dotted keys of the numbers of the model that vary."""
         return tuple(filter(is_model_key, self.places))
+
+    @cached_property
+    def keys_of_input(self) -> tuple[str, ...]:
+        """Those of them that are numbers of the table [input]."""
+        return tuple(key for key in self.keys if key.startswith(f"{INPUT}."))
 
     def column(self, name: str) -> np.ndarray:
         """Values of a key along its axis; empty where no axis has it."""
@@ -155,7 +161,7 @@ class Cases:
         return np.where(found > 0.0, found, UNIT_FREQUENCY)
 
     def varying(self, indices: np.ndarray) -> np.ndarray:
-        """Numbers of the model in some cases, shape (n, keys), in the units of ``keys``."""
+        """Numbers of some cases, shape (n, keys), in the units of ``keys`` (see ``axes.coded``)."""
         columns = [self.values(key, indices) for key in self.keys]
         return np.stack(columns, axis=-1) if columns else np.empty((*np.shape(indices), 0))
 
@@ -163,8 +169,16 @@ class Cases:
         """One of the cases."""
         here = np.array([index])
         law, _, size = self.at(here)
-        numbers = zip(self.keys, self.varying(here)[0].tolist(), strict=True)
-        return Case(self.laws[int(law[0])], float(self.betas(here)[0]), float(size[0]), tuple(numbers))
+        return Case(
+            self.laws[int(law[0])],
+            float(self.betas(here)[0]),
+            float(size[0]),
+            self.named(self.varying(here)[0].tolist()),
+        )
+
+    def named(self, numbers: Iterable[float]) -> tuple[tuple[str, float | str], ...]:
+        """Numbers of a case, in the order of ``keys``, with their keys."""
+        return tuple((key, named(key, number)) for key, number in zip(self.keys, numbers, strict=True))
 
 
 class AmplitudeUnit(NamedTuple):
@@ -205,17 +219,22 @@ def _axes(document: Mapping[str, Any], omega_n: float) -> Iterator[Axis]:
         yield Axis("case", _listed(document, omega_n))
         return
     yield Axis(LAW, {LAW: np.array(sweep["friction_law"])})
-    numbers = {key: np.array(values) for key, values in sweep.get("axes", {}).items()}
-    groups = numbers.pop(ZIP, np.empty(0)).tolist()
+    given = dict(sweep.get("axes", {}))
+    groups = given.pop(ZIP, [])
+    numbers = {key: np.array([coded(key, each) for each in values]) for key, values in given.items()}
     leaders = {key: group[0] for group in groups for key in group}
     for key in numbers:
         if key == leaders.get(key, key):
-            yield Axis(
-                dimension(key), {each: numbers[each] for each in numbers if leaders.get(each, each) == key}
-            )
+            together = {each: numbers[each] for each in numbers if leaders.get(each, each) == key}
+            yield Axis(dimension(_written(document, key)), together)
     if "sample" in sweep:
         yield Axis(SAMPLE, sample.drawn(sweep["sample"]))
     yield from _of_input(sweep, omega_n)
+
+
+def _written(document: Mapping[str, Any], key: str) -> str:
+    """A dotted key as the file has it."""
+    return rotation.text(key) if rotation.turns(document) else key
 
 
 def _of_input(sweep: Mapping[str, Any], omega_n: float) -> Iterator[Axis]:
@@ -237,7 +256,9 @@ def _listed(document: Mapping[str, Any], omega_n: float) -> dict[str, np.ndarray
     cases = document["sweep"]["case"]
     keys = model_keys(cases)
     numbers = {
-        key: np.array([case[key] if key in case else given_number(document, key) for case in cases], float)
+        key: np.array(
+            [coded(key, case[key]) if key in case else given_number(document, key) for case in cases], float
+        )
         for key in keys
     }
     columns = {LAW: np.array([case["friction_law"] for case in cases]), **numbers}

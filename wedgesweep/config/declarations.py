@@ -5,7 +5,7 @@ from math import nan, sqrt
 from typing import Any
 
 from wedgesweep.config import force_table
-from wedgesweep.config.axes import NO_NUMBER, TOGETHER, Axes, WithNumbers, numbers_of
+from wedgesweep.config.axes import NO_NUMBER, TOGETHER, Axes, Varied, WithNumbers, numbers_of
 from wedgesweep.config.inputs import INPUT, SCALE
 from wedgesweep.config.keys import Choice, Flag, Number, Text, Whole
 from wedgesweep.config.sample import KEYS as SAMPLE_KEYS
@@ -117,7 +117,7 @@ INPUT_KEYS = (
 )
 
 
-def _grid(numbers: Mapping[str, Number], transient: bool) -> Table:
+def _grid(numbers: Mapping[str, Varied], transient: bool) -> Table:
     """[sweep] as a grid, under a sine or beside an [input]; ``numbers`` may vary."""
     where = (
         "under [input]: every law at every scale"
@@ -156,7 +156,7 @@ def _grid(numbers: Mapping[str, Number], transient: bool) -> Table:
     )
 
 
-def _listed(numbers: Mapping[str, Number]) -> Table:
+def _listed(numbers: Mapping[str, Varied]) -> Table:
     """[sweep] as a list of cases."""
     return table(
         "sweep",
@@ -280,7 +280,7 @@ def root(transient: bool = False) -> Table:
     return table("", "Config of wedgesweep", title, *model.groups, scaled if transient else cases, SOLVER)
 
 
-def numbers() -> dict[str, Number]:
+def numbers() -> dict[str, Varied]:
     """The numbers of models that a sweep may vary, by dotted key."""
     return numbers_of(_model())
 

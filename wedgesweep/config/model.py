@@ -1,7 +1,7 @@
 """A checked config: every key in its own unit, and SI numbers of all that is simulated."""
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from hashlib import sha256
 from math import pi
@@ -9,12 +9,14 @@ from typing import Any
 
 import numpy as np
 
-from wedgesweep import rotation, toml
-from wedgesweep.config.axes import dimension, with_numbers
+from wedgesweep import formatting, rotation, toml
+from wedgesweep.config.axes import INPUT, dimension, named, with_numbers
 from wedgesweep.config.cases import UNIT_FREQUENCY, AmplitudeUnit, Case, Cases, natural_frequency, of_document
 from wedgesweep.config.contradictions import contradictions
 from wedgesweep.config.declarations import numbers
 from wedgesweep.config.input_contradictions import is_force
+from wedgesweep.config.keys import Number
+from wedgesweep.config.turned import numbers_back, turned_numbers
 from wedgesweep.effects import EFFECTS, empirical_force, go_together, jamming, lift_off, of_system
 from wedgesweep.effects.base import OSCILLATOR
 from wedgesweep.friction import LAWS
@@ -209,25 +211,56 @@ class Config:
             max_periods=given["max_periods"],
             keep_waveforms=given["keep_waveforms"],
             continuation=given["continuation"],
-            transient=self._transient() if self.transient else None,
+            transient=self._nominal_run if self.transient else None,
         )
 
     @property
     def transient(self) -> bool:
         """Whether the config has an [input], which does not repeat."""
-        return "input" in self.document
+        return INPUT in self.document
 
     @cached_property
     def input(self) -> Input:
         """The input at scale 1; raises ConfigError if a recording cannot be read."""
         return input_of(self.document["input"], self.sweep.omega_n)
 
-    def _transient(self) -> Transient:
-        """How the input is run."""
+    def tables_of_input(self, indices: np.ndarray) -> list[dict[str, Any]]:
+        """The table [input] of some cases, shape (n,)."""
+        columns = [self.sweep.values(key, indices).tolist() for key in self.sweep.keys_of_input]
+        names = [key.removeprefix(f"{INPUT}.") for key in self.sweep.keys_of_input]
+        rows = zip(*columns, strict=True) if columns else [()] * len(indices)
+        return [self.document[INPUT] | dict(zip(names, row, strict=True)) for row in rows]
+
+    def transients(self, indices: np.ndarray) -> tuple[Transient, ...]:
+        """How some cases are run under inputs of their own; none where all have the same."""
+        if not self.sweep.keys_of_input:
+            return ()
+        tables = self.tables_of_input(indices)
+        # Equal inputs are one object.
+        different = {repr(table): table for table in tables}
+        samples = self._nominal_run.samples
+        made = {text: replace(self._transient(table), samples=samples) for text, table in different.items()}
+        return tuple(made[repr(table)] for table in tables)
+
+    @cached_property
+    def _nominal_run(self) -> Transient:
+        """How the input is run; all cases have the samples that the highest frequencies need."""
+        highest = {
+            key.removeprefix(f"{INPUT}."): self.sweep.column(key).max().item()
+            for key in self.sweep.keys_of_input
+        }
+        run = self._transient(self.document[INPUT])
+        return (
+            replace(run, samples=self._transient(self.document[INPUT] | highest).samples) if highest else run
+        )
+
+    def _transient(self, table: Mapping[str, Any]) -> Transient:
+        """How an input is run."""
         absolute = self.system == OSCILLATOR and self.oscillator["contact"] != "base"
-        rate = self.document["input"].get("sampling_hz")
         belt = self.oscillator.get("belt_velocity", 0.0) if absolute else 0.0
-        return transient_of(self.input, self.sweep.omega_n, rate, absolute, self.system == OSCILLATOR, belt)
+        natural, rate = self.sweep.omega_n, table.get("sampling_hz")
+        given = input_of(table, natural)
+        return transient_of(given, natural, rate, absolute, self.system == OSCILLATOR, belt)
 
     def case_list(self) -> list[Case]:
         """All cases, which may be many: ``sweep.case`` makes one of them."""
@@ -240,7 +273,7 @@ class Config:
         columns: dict[str, Any] = {name: (dims, sweep.column(name)) for name, dims in names.items()}
         if not self.transient:
             columns |= self._frequencies(columns)
-        found = {dimension(name): (*column, self._about(name)) for name, column in columns.items()}
+        found = dict(self._coordinate(name, *column) for name, column in columns.items())
         found["friction_law"] = (found["friction_law"][0], list(sweep.friction_law), found["friction_law"][2])
         return found
 
@@ -259,11 +292,20 @@ class Config:
             found["omega_n"] = dims, sweep.omega_ns(indices)
         return found
 
+    def _coordinate(self, name: str, dims: tuple[str, ...], values: np.ndarray) -> tuple[str, Any]:
+        """Name of a coordinate, and its dimensions, values and attributes, as the file has its key."""
+        if name not in self.sweep.keys:
+            return name, (dims, values, self._about(name))
+        key, factor = rotation.turned_path(name) if self.turns else (name, 1.0)
+        number = (turned_numbers() if self.turns else numbers())[key]
+        about = {"long_name": number.meaning, "key": key}
+        if isinstance(number, Number):
+            about["units"] = number.quantity.unit
+        shown = [named(name, rotation.scaled(value, factor)) for value in values.tolist()]
+        return dimension(key), (dims, np.array(shown), about)
+
     def _about(self, name: str) -> dict[str, str]:
-        """Attributes of a coordinate."""
-        if name in self.sweep.keys:
-            number = numbers()[name]
-            return {"units": number.quantity.unit, "long_name": number.meaning, "key": name}
+        """Attributes of a coordinate that is no number of the model."""
         force = self.forced and not self.transient
         return {
             "friction_law": {"long_name": "friction law"},
@@ -285,11 +327,15 @@ class Config:
         model = self.at(dict(case.numbers))
         return model.record_with(model.effects, case.law, case.amplitude, case.beta * model.omega_n)
 
-    def at(self, numbers: Mapping[str, float]) -> "Config":
+    def given(self, numbers: Mapping[str, Any]) -> dict[str, Any]:
+        """Numbers with the keys of the file as those of the document, as ``at`` takes them."""
+        return numbers_back(numbers) if self.turns else dict(numbers)
+
+    def at(self, numbers: Mapping[str, float | str]) -> "Config":
         """The config of a model with other numbers, by dotted key; its sweep stays what it is."""
         return Config(with_numbers(self.document, numbers)) if numbers else self
 
-    def alone(self, numbers: Mapping[str, float]) -> "Config":
+    def alone(self, numbers: Mapping[str, float | str]) -> "Config":
         """The config of a model with these numbers whose sweep varies nothing else."""
         changed = self.at(numbers)
         rest = {key: each for key, each in self.document["sweep"].items() if key not in ("axes", "sample")}
@@ -314,10 +360,14 @@ class Config:
         """Whether the input is a force, and amplitudes are in N."""
         return self.excitation == "force"
 
-    @property
-    def case_unit(self) -> str:
-        """SI unit of the amplitude of a case; none of the scale of an [input]."""
-        return "" if self.transient else "N" if self.forced else "m"
+    def case_in_words(self, index: int) -> str:
+        """A case as messages name it."""
+        law, beta, amplitude, numbers = self.sweep.case(index)
+        unit = "" if self.transient else "N" if self.forced else "m"
+        if not self.turns:
+            return formatting.case(law, beta, amplitude, numbers, unit)
+        shown = rotation.written(dict(numbers)).items()
+        return formatting.case(law, beta, amplitude, shown, rotation.UNITS.get(unit, ""))
 
     @property
     def has_no_spring(self) -> bool:
@@ -369,8 +419,8 @@ class Config:
         if (law, *numbers) not in kept:
             if len(kept) >= MOST_KEPT:
                 kept.clear()
-            named = tuple(zip(self.sweep.keys, numbers, strict=True))
-            kept[law, *numbers] = self.record(Case(self.sweep.laws[law], 1.0, 1.0, named))
+            case = Case(self.sweep.laws[law], 1.0, 1.0, self.sweep.named(numbers))
+            kept[law, *numbers] = self.record(case)
         return kept[law, *numbers]
 
     @cached_property
@@ -380,8 +430,8 @@ class Config:
     @cached_property
     def records_of_laws(self) -> np.ndarray:
         """Parameter records of each law, of the nominal model and of the ends of what varies."""
-        columns = {key: self.sweep.column(key) for key in self.sweep.keys}
-        ends = [tuple((key, end(each).item()) for key, each in columns.items()) for end in (np.min, np.max)]
+        columns = [self.sweep.column(key) for key in self.sweep.keys]
+        ends = [self.sweep.named(end(each).item() for each in columns) for end in (np.min, np.max)]
         models = dict.fromkeys([(), *ends])
         cases = [Case(law, 1.0, 1.0, numbers) for law in self.sweep.laws for numbers in models]
         return stacked([self.record(case) for case in cases])

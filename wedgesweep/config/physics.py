@@ -45,7 +45,8 @@ def breakaway(config: Config) -> dict[str, tuple[tuple[str, ...], np.ndarray, di
     # Each sample is a model of its own, with a linear programme (0.1 ms) for bounds that nobody reads alone.
     if config.system == OSCILLATOR or SAMPLE in config.sweep.dims:
         return {}
-    dims, cases = config.sweep.along((LAW, *config.sweep.keys))
+    cases_of = set(config.sweep.keys) - set(config.sweep.keys_of_input)
+    dims, cases = config.sweep.along((LAW, *cases_of))
     rows = config.at_rest.records(cases.ravel())
     defined = rows["friction"]["set_valued"].astype(bool) & ~has_own_mechanics(rows)
     values = np.where(defined, breakaway_accelerations(rows), nan).reshape(2, *cases.shape)

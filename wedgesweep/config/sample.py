@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from wedgesweep.config.axes import TOLERANCE, WithNumbers, is_model_key
+from wedgesweep.config.axes import TOLERANCE, Varied, WithNumbers, is_model_key
 from wedgesweep.config.keys import Choice, Flag, Number, Whole
 from wedgesweep.config.tables import Table, table
 from wedgesweep.hints import show
@@ -71,16 +71,20 @@ class Sample(WithNumbers):
 
     def _out_of_range(self, read: Mapping[str, Any], path: str) -> Iterator[str]:
         for key, values in drawn(read).items():
+            number = self.numbers[key]
             for end in (float(values.min()), float(values.max())):
-                if fault := self.numbers[key].quantity.fault(end):
+                if isinstance(number, Number) and (fault := number.quantity.fault(end)):
                     yield f'{path}."{key}": {end:.6g} is drawn, which is out of range; it {fault}'
 
     def read_number(
-        self, number: Number, value: Any, path: str, problems: list[str], read: Mapping[str, Any]
+        self, number: Varied, value: Any, path: str, problems: list[str], read: Mapping[str, Any]
     ) -> Any:
+        if isinstance(number, Whole | Choice):
+            problems.append(f"{path}: has no distribution; list its values in [sweep.axes]")
+            return None
         return _read(value, path, problems)
 
-    def number_shape(self, number: Number) -> dict[str, Any]:
+    def number_shape(self, number: Varied) -> dict[str, Any]:
         return {"anyOf": [{"type": "string"}, *(each.shape() for each in DISTRIBUTIONS.values())]}
 
 

@@ -105,11 +105,11 @@ class Series(Several):
 
 @dataclass(frozen=True, kw_only=True)
 class Numbers(Key):
-    """Numbers that may repeat, in any order."""
+    """Numbers, or names, that may repeat, in any order."""
 
-    item: Number
+    item: Number | Choice
 
-    def read(self, value: Any, path: str, problems: list[str]) -> list[float] | None:
+    def read(self, value: Any, path: str, problems: list[str]) -> list[Any] | None:
         given = value if isinstance(value, list) else [value]
         read = [self.item.read(each, f"{path}[{i}]", problems) for i, each in enumerate(given)]
         known = [each for each in read if each is not None]

@@ -6,7 +6,8 @@ from math import pi
 from typing import Any
 
 from wedgesweep import rotation
-from wedgesweep.config.declarations import root
+from wedgesweep.config.axes import ZIP, Varied
+from wedgesweep.config.declarations import numbers, root
 from wedgesweep.config.keys import Key, Number
 from wedgesweep.config.series import Series
 from wedgesweep.config.tables import Table
@@ -43,7 +44,12 @@ class Turned:
         if isinstance(key, tuple):
             return tuple(other for each in key for other in (self.table(each), *self._in_degrees(each)))
         if isinstance(key, Mapping):
-            return {name: self.table(each) for name, each in key.items()}
+            return {
+                # Of a number the name is a dotted key.
+                name.removesuffix(each.key) + other.key if isinstance(each, Number) else name: other
+                for name, each in key.items()
+                for other in (self.table(each), *self._in_degrees(each))
+            }
         if not isinstance(key, Key) or not is_dataclass(key):
             return key
         changed = {each.name: getattr(key, each.name) for each in fields(key)}
@@ -82,9 +88,30 @@ class Turned:
             return document
         found = {}
         for key, value in document.items():
-            name, factor = self.names.get(key, (key, 1.0))
-            found[name] = rotation.scaled(value, factor) if key in self.names else self.back(value)
+            own, factor = self.path_back(key)
+            found[own] = rotation.scaled(value, factor) if own != key else self.back(value)
+        if ZIP in found:
+            found[ZIP] = [[self.path_back(key)[0] for key in group] for group in found[ZIP]]
         return found
+
+    def path_back(self, key: str) -> tuple[str, float]:
+        """A key, dotted or not, in a translation, and its number over that of the rotation."""
+        table, dot, name = key.rpartition(".")
+        name, factor = self.names.get(name, (name, 1.0))
+        return f"{table}{dot}{name}", factor
+
+
+def turned_numbers() -> dict[str, Varied]:
+    """The numbers of an oscillator that turns that a sweep may vary, by dotted key."""
+    turned: dict[str, Varied] = Turned().table(numbers())
+    return turned
+
+
+def numbers_back(given: Mapping[str, Any]) -> dict[str, Any]:
+    """Numbers by dotted key of an oscillator that turns, as those of a translation."""
+    turned, _ = turned_root()
+    back: dict[str, Any] = turned.back(given)
+    return back
 
 
 def _with_default(key: Any, path: tuple[str, ...], default: float) -> Any:

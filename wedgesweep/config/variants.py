@@ -24,7 +24,7 @@ def single_case(
     frequency_hz: float | None,
     law: str | None,
     amplitude_N: float | None = None,
-    numbers: Mapping[str, float] = MappingProxyType({}),
+    numbers: Mapping[str, float | str] = MappingProxyType({}),
 ) -> Config:
     """The same config with a grid of one case, whose waveforms are kept; raises ConfigError.
 
@@ -44,5 +44,5 @@ def single_case(
     if config.transient:
         raise ConfigError(["input: a single case is of a sine; remove [input], or use 'wedgesweep run'"])
     solver = config.document["solver"] | {"keep_waveforms": True, "continuation": False}
-    document = with_numbers(config.document, numbers) | {"sweep": grid, "solver": solver}
+    document = with_numbers(config.document, config.given(numbers)) | {"sweep": grid, "solver": solver}
     return from_document(Config(document).written, "case")

@@ -170,7 +170,9 @@ def of(data: "Data") -> dict[str, catalogue.FigureKind]:
         return measured.FIGURES
     if "sample" in data.dims:
         return samples.FIGURES
-    return transient.FIGURES if "scale" in data.coords else FIGURES
+    if "scale" in data.coords:
+        return transient.FIGURES | {name: kind for name, kind in FIGURES.items() if kind.any_axes}
+    return FIGURES
 
 
 def kind_of(data: "Data", name: str) -> catalogue.FigureKind:

@@ -47,11 +47,12 @@ def draw(
     x: str | None = None,
     color: str | None = None,
     facet: str | None = None,
-    variable: str = "amplitude_ratio",
+    variable: str | None = None,
     at: Mapping[str, Any] | None = None,
 ) -> Panels:
     """Draw a variable over the axis ``x``; by default the longest."""
     ds, layout = over_axes.laid_out(ds, x, color, facet, at)
+    variable = variable or over_axes.size_of_motion(ds)
     over_axes.variable_of(ds, variable)
     parts = over_axes.panels_of(ds, layout.facet)
     made = panels(target, len(parts), size=(3.3, 3.2))
@@ -75,7 +76,7 @@ def _colors(ds: xr.Dataset, name: str | None) -> tuple[list[Any], list[str], Sca
         return [style.BLUE], [""], None
     found = over_axes.values(ds, name)
     names = [over_axes.written(ds, name, value) for value in ds[name].values.tolist()]
-    if found.dtype.kind in "OUT":
+    if name == "friction_law":
         return [style.law_style(str(law))["color"] for law in found], names, None
     if len(found) <= MOST_NAMED:
         return list(style.SEQUENTIAL(np.linspace(0.0, 1.0, len(found)))), names, None

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from wedgesweep import formatting
 from wedgesweep.figures import cases
 
 # Dimensions that figures of frequency and amplitude draw.
@@ -41,8 +42,13 @@ def at_values(ds: xr.Dataset, at: Mapping[str, Any] | None) -> xr.Dataset:
             continue
         if ds[place].ndim > 1:
             raise ValueError(f"{name}: depends on {', '.join(map(str, ds[place].dims))}; pick one of these")
-        if ds[place].dtype.kind in "OUT":
+        if place == "friction_law":
             ds = cases.of_law(ds, str(value)).squeeze(ds[place].dims[0])
+        elif ds[place].dtype.kind in "OUT":
+            names = ds[place].values.tolist()
+            if value not in names:
+                raise ValueError(f"{name}: no {value}; the dataset has {', '.join(names)}")
+            ds = ds.isel({ds[place].dims[0]: names.index(value)})
         else:
             ds = ds.isel({ds[place].dims[0]: cases.nearest(ds[place], float(value))[0]})
     return ds
@@ -75,10 +81,11 @@ def _alone(ds: xr.Dataset) -> xr.Dataset:
     from wedgesweep.config.physics import physics
 
     numbers = {ds[name].attrs["key"]: ds[name].item() for name in varied(ds)}
-    model = config.parse(ds.attrs["config"]).alone(numbers)
+    whole = config.parse(ds.attrs["config"])
+    model = whole.alone(whole.given(numbers))
     found = ds.drop_vars([name for name in (*varied(ds), "omega_n") if name in ds.coords])
     found = found.assign_attrs({**physics(model), "config": model.to_toml()})
     if "frequency" in found.dims:
         found = found.swap_dims(frequency="beta")
-    chosen = ", ".join(f"{key} = {value:.4g}" for key, value in numbers.items())
+    chosen = ", ".join(f"{key} = {formatting.setting(value, 4)}" for key, value in numbers.items())
     return found.assign_attrs(model=chosen)

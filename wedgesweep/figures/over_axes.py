@@ -121,6 +121,11 @@ def panels_of(ds: xr.Dataset, facet: str | None) -> list[tuple[str, xr.Dataset]]
     return [(written(part, facet, part[facet].item()), part) for part in parts]
 
 
+def size_of_motion(ds: xr.Dataset) -> str:
+    """The variable that is drawn where none is asked for."""
+    return "peak_to_peak" if "scale" in ds.coords else "amplitude_ratio"
+
+
 def variable_of(ds: xr.Dataset, name: str) -> xr.DataArray:
     """A variable with one number a case; raises ValueError."""
     numbers = [

@@ -1,5 +1,6 @@
 """Solving cases: each gives a record, also if it fails."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 from math import inf
 from pathlib import Path
@@ -10,11 +11,12 @@ import numpy as np
 
 from wedgesweep import kernels, simulate
 from wedgesweep.outcome import Outcome
-from wedgesweep.simulate import Settings
+from wedgesweep.simulate import Settings, Transient
 from wedgesweep.solvers.trajectory import CaseError
-from wedgesweep.sweep import transients, variables
+from wedgesweep.sweep import variables
 from wedgesweep.sweep.batch import solve_batch
 from wedgesweep.sweep.continuation import solve_rows
+from wedgesweep.sweep.transients import solve_case
 from wedgesweep.systems import example
 
 SUSPENSION = "suspension"
@@ -68,6 +70,7 @@ class Chunk(NamedTuple):
     settings: Settings
     case_timeout: float
     dtype: np.dtype
+    transients: tuple[Transient, ...] = ()
 
 
 def solve_chunk(chunk: Chunk) -> np.ndarray:
@@ -76,7 +79,12 @@ def solve_chunk(chunk: Chunk) -> np.ndarray:
 
 
 def solve_cases(
-    cases: np.ndarray, indices: np.ndarray, settings: Settings, case_timeout: float, dtype: np.dtype
+    cases: np.ndarray,
+    indices: np.ndarray,
+    settings: Settings,
+    case_timeout: float,
+    dtype: np.dtype,
+    transients: Sequence[Transient] = (),
 ) -> np.ndarray:
     """Solve some cases; a case that fails gives a status and a message, never an exception.
 
@@ -92,6 +100,8 @@ def solve_cases(
         Time limit per case (s); radau only.
     dtype : dtype
         Layout of the records (see variables.record_dtype).
+    transients : sequence of Transient, n
+        The input of each case, unless all have that of the settings.
 
     Returns
     -------
@@ -106,7 +116,8 @@ def solve_cases(
     for case in range(len(indices)):
         started = perf_counter()
         try:
-            _solve_case(cases[case : case + 1], settings, case_timeout, records[case])
+            own = replace(settings, transient=transients[case]) if transients else settings
+            _solve_case(cases[case : case + 1], own, case_timeout, records[case])
             outcome, message = Outcome.OK, ""
         except CaseError as error:
             outcome, message = Outcome[error.status.upper()], str(error)
@@ -125,7 +136,7 @@ def solve_cases(
 def _solve_case(case: np.ndarray, settings: Settings, case_timeout: float, record: np.void) -> None:
     limited = replace(settings, case_timeout=case_timeout)
     if settings.transient is not None:
-        transients.solve_case(case, limited, record)
+        solve_case(case, limited, record)
         return
     result, statistics = simulate.respond(case, limited, variables.HARMONICS)
     if not np.isfinite(result.numbers["amplitude_ratio"]):

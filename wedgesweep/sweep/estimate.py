@@ -72,7 +72,8 @@ def _timed(sweep: Sweep, index: np.ndarray) -> np.ndarray:
     """Record of a case, shape (1,), with the wall time (s) of all its periods; Radau runs a part of them."""
     settings, records = sweep.settings, sweep.config.records(index)
     if settings.transient is not None:
-        return _timed_motion(sweep, index, settings.transient)
+        (own,) = sweep.config.transients(index) or (settings.transient,)
+        return _timed_motion(sweep, index, own)
     if settings.method != "radau" or settings.steady or settings.continuation:
         return sweep.solve(index)
     periods = int(settings.settling(records["input"]["omega"])[0]) + settings.kept_periods

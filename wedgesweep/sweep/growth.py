@@ -37,7 +37,9 @@ def carried(records: np.ndarray, earlier: tuple[Config, Rows], now: tuple[Config
 def _context(config: Config) -> tuple[object, ...]:
     """What results depend on beside parameter records."""
     own = (config.document["solver"], config.system)
-    return (*own, config.document["input"], config.omega_n) if config.transient else own
+    # The inputs themselves are part of the keys.
+    transient = config.solver.transient
+    return own if transient is None else (*own, config.omega_n, transient.samples)
 
 
 def _keys(config: Config, rows: Rows, indices: np.ndarray) -> Iterator[bytes]:
@@ -47,10 +49,21 @@ def _keys(config: Config, rows: Rows, indices: np.ndarray) -> Iterator[bytes]:
         different, numbers = np.unique(rows.of(some), return_inverse=True)
         cases = rows.cases(different)
         records = config.records(cases.ravel()).reshape(cases.shape)
-        digests = [blake2b(row.tobytes(), digest_size=16).digest() for row in records]
+        rest = _inputs(config, cases)
+        digests = [
+            blake2b(row.tobytes() + text, digest_size=16).digest()
+            for row, text in zip(records, rest, strict=True)
+        ]
         places = some // rows.stride % rows.width
         for number, place in zip(numbers.tolist(), places.tolist(), strict=True):
             yield digests[number] + place.to_bytes(4)
+
+
+def _inputs(config: Config, cases: np.ndarray) -> list[bytes]:
+    """The table [input] of the first case of each row; nothing where the input is a sine."""
+    if not config.transient:
+        return [b""] * len(cases)
+    return [repr(sorted(table.items())).encode() for table in config.tables_of_input(cases[:, 0])]
 
 
 def records_of(ds: xr.Dataset, dtype: np.dtype) -> np.ndarray:

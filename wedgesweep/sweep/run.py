@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from wedgesweep import config, formatting, rotation
+from wedgesweep import config, rotation
 from wedgesweep.config import Config
 from wedgesweep.config.physics import breakaway, physics
 from wedgesweep.errors import MismatchError, SweepError
@@ -21,7 +21,7 @@ from wedgesweep.processes import interrupts_ignored
 from wedgesweep.simulate import Settings
 from wedgesweep.sweep import dataset, growth, journal, labels, provenance, transients, variables
 from wedgesweep.sweep.backend import Backend, Pool, local
-from wedgesweep.sweep.cases import Chunk, compile_once, solve_cases
+from wedgesweep.sweep.cases import Chunk, compile_once, solve_chunk
 from wedgesweep.sweep.chunks import Rows
 from wedgesweep.sweep.fingerprint import differences, fingerprint
 from wedgesweep.sweep.journal import Journal
@@ -234,7 +234,7 @@ class Sweep:
     def solve(self, indices: np.ndarray, case_timeout: float | None = None) -> np.ndarray:
         """Solve the cases with these indices (in a continuation: whole rows) in this process."""
         limit = self._limit(case_timeout)
-        return solve_cases(self.config.records(indices), indices, self.settings, limit, self.dtype)
+        return solve_chunk(self._chunk_of(indices, limit))
 
     def _open(self, opened: ExitStack, backend: Backend, n_jobs: int) -> Pool:
         with interrupts_ignored():
@@ -266,7 +266,12 @@ class Sweep:
     def _chunk(self, case_timeout: float, rows: np.ndarray) -> Chunk:
         """The task to solve some rows of cases."""
         cases = self.rows.cases(rows).ravel()
-        return Chunk(self.config.records(cases), cases, self.settings, case_timeout, self.dtype)
+        return self._chunk_of(cases, case_timeout)
+
+    def _chunk_of(self, cases: np.ndarray, case_timeout: float) -> Chunk:
+        """The task to solve some cases, shape (n,)."""
+        records, transients = self.config.records(cases), self.config.transients(cases)
+        return Chunk(records, cases, self.settings, case_timeout, self.dtype, transients)
 
     def _empty(self) -> np.ndarray:
         """Room for the records of all cases; the system hands it out as they are filled in."""
@@ -284,8 +289,7 @@ class Sweep:
     def _require_ok(self, records: np.ndarray) -> None:
         failed = records[records["status"] != Outcome.OK]
         if failed.size:
-            case = self.config.sweep.case(failed[0]["index"])
-            where = formatting.case(*case, unit=self.config.case_unit)
+            where = self.config.case_in_words(failed[0]["index"])
             raise CaseFailedError(f"{where}: {failed[0]['message'].decode()}")
 
     def assembled(self, records: np.ndarray, started: datetime) -> "xr.Dataset":
@@ -310,7 +314,10 @@ class Sweep:
         transient = self.settings.transient
         if transient is None or not self.settings.keep_waveforms:
             return {}
-        return transients.coordinates(self.config.input, transient, self.config.document["input"])
+        sweep = self.config.sweep
+        dims, cases = sweep.along(sweep.keys_of_input)
+        tables = self.config.tables_of_input(cases.ravel())
+        return transients.coordinates(tables, (*dims, "time"), cases.shape, transient)
 
 
 def _header(ds: "xr.Dataset") -> dict[str, str]:

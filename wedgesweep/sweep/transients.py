@@ -1,6 +1,6 @@
 """Cases whose input does not repeat: a whole motion becomes a record, and its times coordinates."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from math import inf, nan
 from typing import Any
 
@@ -8,8 +8,7 @@ import numpy as np
 
 from wedgesweep import response, simulate
 from wedgesweep.effects import stray_vibration
-from wedgesweep.inputs import sine_sweep
-from wedgesweep.inputs.sampled import Input
+from wedgesweep.inputs import kinds, sine_sweep
 from wedgesweep.simulate import Settings, Transient
 from wedgesweep.solvers.trajectory import CaseError, Trajectory
 from wedgesweep.systems import driven_mass, is_oscillator, moving_mass, opens
@@ -107,15 +106,23 @@ def _of_lift_off(sums: np.void) -> dict[str, float]:
     }
 
 
-def coordinates(given: Input, transient: Transient, table: Mapping[str, Any]) -> dict[str, Any]:
-    """Times of the stored samples, the input there at scale 1, and the frequency of a sine sweep."""
+def coordinates(
+    tables: Sequence[Mapping[str, Any]], dims: tuple[str, ...], shape: tuple[int, ...], transient: Transient
+) -> dict[str, Any]:
+    """Times of the stored samples, the input there at scale 1, and the frequency of a sine sweep.
+
+    ``tables`` [input] are those of an array of cases of a ``shape``; ``dims``: its dimensions, and time.
+    """
     t = np.arange(transient.samples) * (transient.span / transient.samples)
-    about = {"units": given.units, "long_name": f"input at scale 1 ({given.quantity})"}
+    inputs = [kinds.made(table, transient.omega) for table in tables]
+    values = np.reshape([given.at(t, given.sampled()) for given in inputs], (*shape, t.size))
+    about = {"units": inputs[0].units, "long_name": f"input at scale 1 ({inputs[0].quantity})"}
     found = {
         "time": ("time", t, {"units": "s", "long_name": "time"}),
-        "input": ("time", given.at(t, transient.sampled), about),
+        "input": (dims, values, about),
     }
-    if table["kind"] == "sine-sweep":
+    if tables[0]["kind"] == "sine-sweep":
+        swept = np.reshape([sine_sweep.frequency(table, t) for table in tables], values.shape)
         words = {"units": "Hz", "long_name": "frequency of the input"}
-        found["input_frequency"] = ("time", sine_sweep.frequency(table, t), words)
+        found["input_frequency"] = (dims, swept, words)
     return found

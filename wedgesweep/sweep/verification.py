@@ -15,7 +15,7 @@ import joblib
 import numpy as np
 import xarray as xr
 
-from wedgesweep import formatting, response
+from wedgesweep import response
 from wedgesweep.outcome import Outcome
 from wedgesweep.simulate import Settings
 from wedgesweep.solvers import radau
@@ -115,7 +115,6 @@ def verify(sweep: Sweep, ds: xr.Dataset, count: int, seed: int, n_jobs: int) -> 
 
 
 def _task(sweep: Sweep, stored: dict[str, np.ndarray], index: int) -> _Task:
-    case = sweep.config.sweep.case(index)
     record = sweep.config.records(np.array([index]))
     omega, period = float(record["input"]["omega"][0]), int(stored["period"][index])
     window, start = sweep.settings.window(omega), np.zeros(2)
@@ -124,7 +123,7 @@ def _task(sweep: Sweep, stored: dict[str, np.ndarray], index: int) -> _Task:
         whole = period * -(-window.periods // period)
         window, start = replace(window, settle_periods=period, periods=whole), _state(sweep, index)
     return _Task(
-        formatting.case(*case, unit=sweep.config.case_unit),
+        sweep.config.case_in_words(index),
         record,
         window,
         start,

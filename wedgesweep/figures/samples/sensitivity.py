@@ -81,7 +81,7 @@ def draw(
     target: Target,
     ds: xr.Dataset,
     facet: str | None = None,
-    variable: str = "amplitude_ratio",
+    variable: str | None = None,
     at: Mapping[str, Any] | None = None,
 ) -> Panels:
     """Draw the indices of a variable, a panel for each law or each value of ``facet``."""
@@ -90,6 +90,7 @@ def draw(
     given = config.parse(ds.attrs["config"]).document["sweep"].get("sample", {})
     if not given.get("indices"):
         raise ValueError("needs [sweep.sample] with indices = true")
+    variable = variable or over_axes.size_of_motion(ds)
     over_axes.variable_of(ds, variable)
     names = [name for name in models.varied(ds) if ds[name].dims == ("sample",)]
     parts, chosen = over_axes.samples(ds, facet, at)

@@ -24,14 +24,20 @@ def draw(
     ds: xr.Dataset,
     x: str | None = None,
     facet: str | None = None,
-    variable: str = "amplitude_ratio",
+    variable: str | None = None,
     at: Mapping[str, Any] | None = None,
 ) -> Panels:
     """Draw bands of percentiles of a variable, a panel for each law or each value of ``facet``."""
+    variable = variable or over_axes.size_of_motion(ds)
     over_axes.variable_of(ds, variable)
     if "sample" not in ds.dims:
         raise ValueError("needs samples: [sweep.sample] in the config")
-    along = models.coordinate(ds, x or ("frequency" if "frequency" in ds.dims else "beta"))
+    usual = next(name for name in ("scale", "frequency", "beta") if name in ds.dims)
+    along = models.coordinate(ds, x or usual)
+    if "sample" in ds[along].dims:
+        raise ValueError(
+            f"{along}: differs from sample to sample; give an axis that all samples share to --x"
+        )
     parts, chosen = over_axes.samples(ds, facet, at, along)
     made = panels(target, len(parts), size=(3.3, 3.2))
     for ax, (title, part) in zip(made.axes, parts, strict=True):
