@@ -1,8 +1,11 @@
 """Every figure draws the fixture, has a title and units, and fails with a clear message."""
 
+import re
+
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
+from matplotlib.text import Text
 
 from tests import fixture_dataset
 from wedgesweep import config, figures
@@ -60,6 +63,32 @@ def test_draws_and_says_what_it_shows(kind, dataset):
     assert figure.get_suptitle()
     assert len(labels(figure)) >= 2
     assert [text for text in labels(figure) if "[" not in text] == []  # [1] without a dimension
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_units_of_choice_are_in_all_figures_and_move_nothing(kind, dataset):
+    shown, usual = figures.draw(dataset, kind, units="us"), figures.draw(dataset, kind)
+    shown.draw_without_rendering()
+    texts = [text.get_text() for text in shown.findobj(Text) if text.get_visible()]
+    assert [text for text in texts if re.search(r"\bmm\b|\bN\b", text)] == []
+    limits = [[(ax.get_xlim(), ax.get_ylim()) for ax in figure.axes] for figure in (shown, usual)]
+    assert limits[0] == limits[1]
+
+
+def test_a_tick_stands_where_its_number_is(dataset):
+    """Linear and logarithmic axes, and those of panels without a label."""
+    for kind in ("phase-portrait", "peak-to-peak", "lift-off-map"):
+        figure = figures.draw(dataset, kind, units="us")
+        figure.draw_without_rendering()
+        panels = [ax for ax in figure.axes if ax.get_label() != "<colorbar>"]
+        for ax in panels:
+            low, high = sorted(ax.get_ylim())
+            numbers = {tick.get_loc(): tick.label1.get_text() for tick in ax.yaxis.get_major_ticks()}
+            inside = {place: text for place, text in numbers.items() if low <= place <= high}
+            assert len(inside) > 1
+            for place, text in inside.items():
+                assert place == pytest.approx(25.4 * float(text or place / 25.4), rel=1e-5)
+                assert len(text) <= 7  # a round number
 
 
 GRIDS = {

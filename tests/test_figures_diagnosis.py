@@ -59,6 +59,13 @@ def test_draws_and_says_what_it_shows(kind):
     assert diagnosis.FIGURES[kind].load().draw.__doc__.count("To see:") == 1
 
 
+def test_a_diagnosis_is_drawn_in_units_of_choice():
+    figure = figures.draw(build(), "waveforms", units="us")
+    words = {text for ax in figure.axes if (text := ax.get_ylabel())}
+    assert {text.partition("[")[2] for text in words} == {"in]", "in/s]", "mil]"}
+    assert " in\n" in figure.axes[0].get_title()
+
+
 # Without a cause, without known amplitudes, with an attempt; with rivals. That of a cause is drawn above.
 @pytest.mark.few(2)
 @pytest.mark.parametrize("verdict", ["nothing-missing", "data-insufficient", "none-of-mine", "tied"])

@@ -1,5 +1,7 @@
 """Units of recorded channels, and those in which datasets are shown."""
 
+import re
+from math import prod
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -96,17 +98,33 @@ def is_unit(word: str) -> bool:
     return word in FOREIGN or any(word in units for units in UNITS.values())
 
 
-# Systems of units in which a dataset is shown: for a unit of SI the one in its place, and its size in SI.
-_US = {"m": ("in", INCH), "mm": ("in", 1e3 * INCH), "kg": ("lb", POUND_MASS)}
+# Systems of units in which numbers are shown: for a unit of SI the one in its place, and its size in it.
+_US = {
+    **{"m": ("in", INCH), "mm": ("in", 1e3 * INCH), "µm": ("mil", 1e3 * INCH)},
+    "kg": ("lb", POUND_MASS),
+}
 SI = "si"
 SYSTEMS: dict[str, dict[str, tuple[str, float]]] = {
     SI: {},
-    "us": {**_US, "N": ("lbf", POUND), "J": ("in lbf", INCH * POUND)},
-    "us-kip": {**_US, "N": ("kip", 1e3 * POUND), "J": ("in kip", 1e3 * INCH * POUND)},
+    "us": {
+        **_US,
+        **{"N": ("lbf", POUND), "J": ("in lbf", INCH * POUND), "mJ": ("in lbf", 1e3 * INCH * POUND)},
+    },
+    "us-kip": {
+        **_US,
+        **{
+            "N": ("kip", 1e3 * POUND),
+            "J": ("in kip", 1e3 * INCH * POUND),
+            "mJ": ("in kip", 1e6 * INCH * POUND),
+        },
+    },
 }
-
-# Units that a dataset has in none but these.
-CUSTOMARY = {unit for system in SYSTEMS.values() for unit, _ in system.values()}
+POWERS = str.maketrans("²³", "23", "^")
+# A number of a text, the unit that it has, and a range of two such numbers or a unit in brackets.
+_NUMBER = r"(?<![\w.,\u00a0])-?\d+(?:\.\d+)?(?:e[-+]?\d+)?"
+_SYMBOLS = "|".join(sorted(SYSTEMS["us"], key=len)[::-1])
+_UNIT = rf"(?:{_SYMBOLS})[-^\d²³]*(?:[ /](?:{_SYMBOLS}|s|rad)[-^\d²³]*)*(?![\w/^²³-])"
+_WRITTEN = re.compile(rf"(?:({_NUMBER}) to )?({_NUMBER}) ({_UNIT})|\[({_UNIT})\]")
 
 
 def in_system(ds: "xr.Dataset", name: str) -> "xr.Dataset":
@@ -115,7 +133,7 @@ def in_system(ds: "xr.Dataset", name: str) -> "xr.Dataset":
         return ds
     shown: dict[Any, Any] = dict(ds.variables)
     for each, values in ds.variables.items():
-        unit, size = _unit_in(str(values.attrs.get("units", "1")), SYSTEMS[name])
+        unit, size = unit_in(str(values.attrs.get("units", "1")), name)
         if size != 1.0:
             shown[each] = (values.dims, values.values / size, values.attrs | {"units": unit})
     # All coordinates anew, so that they keep their order.
@@ -123,13 +141,41 @@ def in_system(ds: "xr.Dataset", name: str) -> "xr.Dataset":
     return ds.assign_coords(coords).assign(shown)
 
 
-def _unit_in(unit: str, system: dict[str, tuple[str, float]]) -> tuple[str, float]:
-    """A unit as CF writes it, such as N mm-1, in another system, and its size in the given one."""
+def unit_in(unit: str, name: str) -> tuple[str, float]:
+    """A unit, such as N/mm or N mm-1, in a system, and its size in the given one."""
+    parts = [_product_in(part, SYSTEMS[name]) for part in unit.split("/")]
+    (_, size), *below = parts
+    return "/".join(words for words, _ in parts), size / prod(each for _, each in below)
+
+
+def _product_in(unit: str, system: dict[str, tuple[str, float]]) -> tuple[str, float]:
     parts, size = [], 1.0
-    for part in unit.split():
-        symbol = part.rstrip("-0123456789")
+    for part in unit.split(" "):
+        symbol = part.rstrip("-^0123456789²³")
         power = part.removeprefix(symbol)
         other, own = system.get(symbol, (symbol, 1.0))
         parts.append(other + power)
-        size *= own ** int(power or 1)
+        size *= own ** int(power.translate(POWERS) or 1) if own != 1.0 else 1.0
     return " ".join(parts), size
+
+
+def in_text(words: str, name: str) -> str:
+    """A text with its numbers of a unit, and units in brackets, in a system."""
+
+    def converted(match: re.Match[str]) -> str:
+        first, number, unit, alone = match.groups()
+        other, size = unit_in(unit or alone, name)
+        if alone:
+            return f"[{other}]"
+        start = f"{_converted(first, size)} to " if first else ""
+        return f"{start}{_converted(number, size)} {other}"
+
+    return _WRITTEN.sub(converted, words)
+
+
+def _converted(number: str, size: float) -> str:
+    """A number in a unit of some size, with as many digits, at least three."""
+    if size == 1.0:
+        return number
+    digits = sum(character.isdigit() for character in number.partition("e")[0].lstrip("-0."))
+    return f"{float(number) / size:.{max(digits, 3)}g}"

@@ -16,7 +16,6 @@ from wedgesweep.cli.options import AT, DATASET, UNITS, FiniteRange, GivenPath, a
 from wedgesweep.figures import FORMATS, diagnosis, measured, samples, transient
 from wedgesweep.kinds import is_measured
 from wedgesweep.outcome import Outcome
-from wedgesweep.units import SI
 
 if TYPE_CHECKING:
     import numpy as np
@@ -156,10 +155,6 @@ def _options(found: "Data", picks: dict[str, Any]) -> dict[str, Any]:
     import xarray as xr
 
     given = {name: value for name, value in picks.items() if value not in (None, ())}
-    # Figures with units of their own do not take the option.
-    if given.get("units") == SI:
-        del given["units"]
-
     if "at" in given:
         given["at"] = _values(found, given["at"])
     if not isinstance(found, xr.Dataset):

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 from wedgesweep import rotation
 from wedgesweep.figures import catalogue, diagnosis, measured, samples, transient
 from wedgesweep.files import written
-from wedgesweep.units import SI, in_system
+from wedgesweep.units import SI
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -28,10 +28,9 @@ if TYPE_CHECKING:
 
 FORMATS = (".png", ".pdf", ".svg")
 DOTS_PER_INCH = 200
-# The picks that figures of all datasets share: a law, and values of axes by name.
-LAW, AT = "law", "at"
-# One more of figures over any axes: a system of units.SYSTEMS.
-UNITS = "units"
+# The picks that figures of all datasets share: a law, and values of axes by name; and that of all figures: a
+# system of units.SYSTEMS.
+LAW, AT, UNITS = "law", "at", "units"
 # What a diagnosis lacks whose tests are all of other kinds.
 LACKS = {
     "steady": "no test is of steady vibration",
@@ -59,9 +58,8 @@ def draw(data: "Data", name: str, ax: "Axes | None" = None, **picks: Any) -> "Fi
     **picks
         Options of the figure, by the names that ``figures.FIGURES[name].picks`` lists: ``beta`` (frequency
         ratio), ``amplitude`` or ``amplitudes`` (m) of a dataset, ``tests`` (indices) of a diagnosis; and
-        ``law`` and ``at`` (values of axes by name) of any dataset, ``units`` (``"us"``, ``"us-kip"``) where
-        figures are over any axes. The nearest values that the data hold are
-        drawn, if they are near.
+        ``law`` and ``at`` (values of axes by name) of any dataset, and ``units`` (``"us"``, ``"us-kip"``).
+        The nearest values that the data hold are drawn, if they are near.
 
     Returns
     -------
@@ -77,11 +75,12 @@ def draw(data: "Data", name: str, ax: "Axes | None" = None, **picks: Any) -> "Fi
     import xarray as xr
 
     from wedgesweep.diagnosis_result import DiagnosisResult
-    from wedgesweep.figures import cases, models
+    from wedgesweep.figures import cases, models, shown_units
 
-    kind = kind_of(data, name)
+    kind, system = kind_of(data, name), picks.get(UNITS, SI)
     try:
         _require_known(picks, options(kind))
+        picks.pop(UNITS, None)
         checked = _of_tests(data, kind.tests) if isinstance(data, DiagnosisResult) else data
         if isinstance(data, xr.Dataset):
             data = _to_be_drawn(data, picks) if kind.any_axes else models.of_one(data, picks.pop(AT, {}))
@@ -97,6 +96,9 @@ def draw(data: "Data", name: str, ax: "Axes | None" = None, **picks: Any) -> "Fi
     whole = panels.figure.figure  # of a subfigure: the figure that it is part of
     if _turns(data):
         _relabel(panels.figure)
+    if system != SI:
+        for part in panels.axes if panels.embedded else [panels.figure]:
+            shown_units.show_in(part, system)
     return whole
 
 
@@ -109,19 +111,14 @@ def _of_tests(result: "DiagnosisResult", tests: str) -> "DiagnosisResult":
 
 
 def _to_be_drawn(ds: "xr.Dataset", picks: dict[str, Any]) -> "xr.Dataset":
-    """The dataset with the variable that is asked for, in the units that are; takes picks away."""
+    """The dataset with the variable that is asked for."""
     if (variable := picks.get("variable", "status")) not in ds:
         from wedgesweep.engineering_quantities import OF_MODEL, with_quantities
 
         ds = with_quantities(ds, [variable])
         if variable in OF_MODEL:  # then no motion is to be read with care
             ds = ds.drop_vars(["lift_off_fraction", "periodicity"], errors="ignore")
-    if (system := picks.pop(UNITS, SI)) == SI:
-        return ds
-    from wedgesweep.figures import models
-
-    # Values of axes are picked in the units of the dataset.
-    return in_system(models.at_values(ds, picks.pop(AT, {})), system)
+    return ds
 
 
 def _turns(data: "Data") -> bool:
@@ -145,12 +142,9 @@ def _relabel(figure: "Figure | SubFigure") -> None:
 
 
 def options(kind: catalogue.FigureKind) -> tuple[str, ...]:
-    """Names of the picks of a figure: a law of any dataset, and its own."""
-    return (
-        kind.picks
-        if kind.module.startswith((diagnosis.__name__, measured.__name__))
-        else tuple(dict.fromkeys((*kind.picks, LAW, AT, *([UNITS] if kind.any_axes else ()))))
-    )
+    """Names of the picks of a figure: units, a law of any dataset, and its own."""
+    of_dataset = not kind.module.startswith((diagnosis.__name__, measured.__name__))
+    return tuple(dict.fromkeys((*kind.picks, *((LAW, AT) if of_dataset else ()), UNITS)))
 
 
 def _require_known(picks: Mapping[str, Any], known: Sequence[str]) -> None:

@@ -1,14 +1,13 @@
 """What axes and titles call the motion and the input of a dataset: those of its system."""
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import xarray as xr
 
 from wedgesweep.figures import style
 from wedgesweep.friction import LAWS
-from wedgesweep.units import CUSTOMARY
 
 SUSPENSION = "side frame minus bolster"
 OSCILLATOR = "oscillator"
@@ -103,9 +102,7 @@ WEDGE = Labels("x-y", "x'-y'", SUSPENSION, style.SIGN, "a", "the input amplitude
 
 def of(ds: xr.Dataset) -> Labels:
     """Return the labels of the dataset of a sweep or a diagnosis."""
-    words = _of_oscillator(ds.attrs) if ds.attrs.get("system") == OSCILLATOR else WEDGE
-    shown = ds["amplitude"].attrs.get("units") if "amplitude" in ds.coords else None
-    return replace(words, unit=shown, factor=1.0) if shown in CUSTOMARY else words
+    return _of_oscillator(ds.attrs) if ds.attrs.get("system") == OSCILLATOR else WEDGE
 
 
 def _of_oscillator(attributes: Mapping[str, Any]) -> Labels:

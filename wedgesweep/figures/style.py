@@ -58,8 +58,9 @@ def label(axes: Sequence[Axes], x: str, y: str, columns: int = 3) -> None:
     columns = min(columns, len(axes))
     for place, ax in enumerate(axes):
         lowest = place + columns >= len(axes)
-        ax.set_xlabel(x if lowest else "", fontsize=9)
-        ax.set_ylabel("" if place % columns else y, fontsize=9)
+        # Labels that are not drawn tell the unit of their axis.
+        ax.set_xlabel(x, fontsize=9, visible=lowest)
+        ax.set_ylabel(y, fontsize=9, visible=place % columns == 0)
         if lowest:
             ax.tick_params(labelbottom=True)
 

@@ -30,9 +30,9 @@ class Multiples(Panels):
 
     def label_sides(self, *texts: str) -> None:
         """Label the y axes of the leftmost panels, from above."""
-        for _, axes in list(self)[::COLUMNS]:
+        for place, (_, axes) in enumerate(self):
             for ax, text in zip(axes, texts, strict=True):
-                ax.set_ylabel(text, fontsize=8.5)
+                ax.set_ylabel(text, fontsize=8.5, visible=place % COLUMNS == 0)
 
 
 def multiples(
