@@ -7,6 +7,7 @@ import pytest
 
 from wedgesweep import api
 from wedgesweep.diagnose.diagnosis import excluded_effects
+from wedgesweep.errors import InputError
 
 MODEL = """
 [oscillator]
@@ -30,6 +31,7 @@ time = { column = "t", unit = "s" }
 displacement = { column = "x", unit = "mm", of = "absolute" }
 force = { column = "F", unit = "N" }
 """
+RECORDED = 'normal_force = { column = "n", unit = "N", zero_std = 0.02 }\n'
 TEST = """
 [[measurement.test]]
 file = "{0}.csv"
@@ -51,25 +53,22 @@ def falling(normal: float) -> float:
     return 0.3 * normal * (normal / 10.0) ** -EXPONENT
 
 
-def write(folder: Path, friction, loads=LOADS) -> Path:
-    """Loops at 1 Hz and 20 mm under each load (N), with 1 % of noise."""
+def write(folder: Path, friction, loads=LOADS, sensor=None) -> Path:
+    """Loops at 1 Hz and 20 mm under each load (N), with 1 % of noise.
+
+    ``sensor``: load (n,) as recorded at times (s) in place of a stated one.
+    """
     random, time, omega = np.random.default_rng(3), np.arange(3000) / 500.0, 2.0 * np.pi
-    text = MEASURED
+    text = MEASURED if sensor is None else MEASURED + RECORDED
     for load in dict.fromkeys(loads):
         x = 0.02 * np.sin(omega * time)
         force = (200.0 - omega**2) * x + friction(load) * np.sign(np.cos(omega * time))
         force = force + 0.01 * force.std() * random.standard_normal(time.size)
-        np.savetxt(
-            folder / f"{load}.csv",
-            np.column_stack([time, 1e3 * x, force]),
-            "%.9g",
-            ",",
-            "\n",
-            "t,x,F",
-            "",
-            "",
-        )
-        text += TEST.format(load)
+        shown = np.zeros(time.size) if sensor is None else sensor(load, time)
+        columns = np.column_stack([time, 1e3 * x, force, shown])
+        np.savetxt(folder / f"{load}.csv", columns, "%.9g", ",", "\n", "t,x,F,n", "", "")
+        test = TEST.format(load)
+        text += test if sensor is None else test.partition("model")[0]
     (folder / "model.toml").write_text(MODEL)
     (folder / "measured.toml").write_text(text)
     return folder / "measured.toml"
@@ -98,3 +97,29 @@ def test_candidates_need_loads_that_differ(tmp_path):
     assert one["guide_friction"].startswith("is friction_level")
     assert one["load_dependent_friction"].startswith("shows only where")
     assert one["preload"] == "acts on no part of it"
+
+
+def test_a_recorded_load_is_that_of_the_model(tmp_path):
+    """Its mean, whatever the noise; loads that hardly differ tell nothing of what depends on them."""
+    random = np.random.default_rng(5)
+    path = write(tmp_path, constant_part, sensor=lambda load, t: load + 0.1 * random.standard_normal(t.size))
+    found = api.read_measurement(path)
+    loads = [found.model_of(test).oscillator["normal_force"] for test in found.tests]
+    assert loads == pytest.approx(LOADS, abs=0.01)
+    assert all(test.normal_force is None for test in found.tests)
+    assert not {"guide_friction", "load_dependent_friction"} & excluded_effects(found).keys()
+    near = write(tmp_path, constant_part, (10.0, 10.2), sensor=lambda load, t: np.full(t.size, load))
+    assert "guide_friction" in excluded_effects(api.read_measurement(near))
+
+
+@pytest.mark.parametrize(
+    ("sensor", "told"),
+    [
+        (lambda load, t: -load + 0.0 * t, "what rubs presses; write sign = -1"),
+        (lambda load, t: load * (1.0 + 0.05 * t), "moves from 5 to 6.5 N, and the model has one load"),
+        (lambda load, t: 0.01 * load + 0.0 * t, "zero_std of more than 5%"),
+    ],
+)
+def test_records_that_are_no_load_of_the_model_are_refused(tmp_path, sensor, told):
+    with pytest.raises(InputError, match=told):
+        api.read_measurement(write(tmp_path, constant_part, sensor=sensor))

@@ -30,6 +30,8 @@ from wedgesweep.periodogram import without_trend
 
 # Bounds of a channel in SI units, and the variation that is rounding, over its size.
 LARGEST, SMALLEST, ROUNDING = 1e12, 1e-15, 1e-13
+# Channels that may be constant.
+CONSTANT = ("time", KNOWN_FORCE, NORMAL_FORCE)
 # Samples per period that must remain, so that all harmonics that are compared pass the filter unchanged.
 FEWEST_PER_PERIOD = 200
 # Half length of the filter in samples that remain, edge of its pass band over the new Nyquist frequency, and
@@ -126,7 +128,7 @@ def _size_faults(signals: Signals) -> Iterator[str]:
             yield f"{name}: no samples in the part that is used; correct the columns, or from_s and to_s"
         elif largest > LARGEST:
             yield f"{name}: {largest:.3g} in SI units is too large; correct the unit or the file"
-        elif name not in ("time", KNOWN_FORCE) and np.ptp(samples) <= max(SMALLEST, ROUNDING * largest):
+        elif name not in CONSTANT and np.ptp(samples) <= max(SMALLEST, ROUNDING * largest):
             yield f"{name} is constant; there is no vibration in it"
 
 

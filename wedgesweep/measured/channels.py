@@ -175,9 +175,10 @@ def model_faults(
 ) -> list[str]:
     """Faults of the base model beside the channels and kinds of the tests."""
     faults, effects = _unit_faults(model, columns), model.effects
-    if NORMAL_FORCE in columns and model.system == OSCILLATOR:
-        faults.append(f"measurement.columns.{NORMAL_FORCE}: an oscillator has no column; leave it out")
-    if NORMAL_FORCE in columns and STRAY in effects:
+    if NORMAL_FORCE in columns and model.turns:
+        fault = "what turns has a torque of friction; state oscillator.friction_N_m of each test by model"
+        faults.append(f"measurement.columns.{NORMAL_FORCE}: {fault}")
+    if NORMAL_FORCE in columns and model.system != OSCILLATOR and STRAY in effects:
         faults.append(f"effects.{STRAY}: beside a {NORMAL_FORCE} a response repeats each period; remove it")
     if model.opens and {*kinds} != {STEADY}:
         faults.append(f"joints that lift off are simulated in tests of kind {STEADY} only; let them hold")

@@ -273,7 +273,7 @@ COLUMNS = table(
     ),
     _channel(
         NORMAL_FORCE,
-        "normal force of one wedge on its column",
+        "normal force of one wedge on its column; oscillator: of its contact",
         "n",
         "N",
         Number.of(ZERO_STD, example=0.1),

@@ -9,10 +9,11 @@ from typing import Any
 from wedgesweep import rotation, toml
 from wedgesweep.config import Config
 from wedgesweep.config.turned import Turned
+from wedgesweep.effects.base import OSCILLATOR
 from wedgesweep.errors import ConfigError, InputError
 from wedgesweep.files import missing
 from wedgesweep.hints import shortened
-from wedgesweep.measured import channels, kinds
+from wedgesweep.measured import channels, contact_load, kinds
 from wedgesweep.measured.build import build_record
 from wedgesweep.measured.declarations import (
     DELAY_STD,
@@ -62,8 +63,9 @@ def read(path: Path, model: Path | None = None) -> Measurement:
     complete = not problems
     model = model or _stated_model(path, measurement, problems)
     config, law = load_model(model, problems) if model else (None, "")
+    contact = config is not None and config.system == OSCILLATOR
     if complete:
-        faults = channels.faults(by_kind, measurement, config)
+        faults = channels.faults(_without_load(by_kind) if contact else by_kind, measurement, config)
         problems += [f"{path}: {_at(fault)}" for fault in faults]
     if config is not None:
         problems += [f"{model}: {fault}" for fault in channels.model_faults(config, columns, by_kind)]
@@ -108,6 +110,14 @@ def _columns_by_kind(measurement: Mapping[str, Any]) -> dict[str, dict[str, Any]
     columns = measurement.get("columns", {})
     found = dict.fromkeys(each.get("kind", STEADY) for each in measurement.get("test", ())) or {STEADY: None}
     return {kind: columns_of(columns, kind, len(found) == 1) for kind in found}
+
+
+def _without_load(by_kind: Mapping[str, Mapping[str, Any]]) -> dict[str, dict[str, Any]]:
+    """The channels that are compared where the load is that of an oscillator's contact."""
+    return {
+        kind: {name: each for name, each in own.items() if name != NORMAL_FORCE}
+        for kind, own in by_kind.items()
+    }
 
 
 def _at(fault: str) -> str:
@@ -182,6 +192,9 @@ def _tests(
         problems.extend(f"{at}.{fault}" for fault in kinds.repeat_faults(given, before))
         before.append({**given, "name": f"{given['file']}{number}"})
         own = by_kind[given.get("kind", STEADY)]
+        contact = model is not None and model.system == OSCILLATOR and NORMAL_FORCE in columns
+        if contact:
+            own = own | {NORMAL_FORCE: columns[NORMAL_FORCE]}
         if given.get("undriven"):
             own = {name: each for name, each in own.items() if name != INPUT}
         told = rotation.text if model is not None and model.turns else str
@@ -192,6 +205,8 @@ def _tests(
         changed = {name: {**each, **changes.get(name, {})} for name, each in own.items()}
         if complete and own:
             found = _test(path.parent, at, given, {**measurement, "columns": changed}, problems)
+            if contact:
+                found = contact_load.stated(found, at, problems)
             tests += [replace(each, name=each.name + number, file=each.file + number) for each in found]
     return tests
 

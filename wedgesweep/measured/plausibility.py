@@ -17,7 +17,7 @@ LARGEST_RATIO, LEAST_RATIO, FEWEST_TESTS = 300.0, 0.01, 2
 def channel_faults(test: TestRecord, file: str) -> list[str]:
     """Faults of and between the channels of a test whose frequency is correct."""
     if test.normal_force is not None and (mean := float(test.normal_force.mean())) <= 0.0:
-        fault = f"normal_force is {mean:.3g} N on average, but a wedge presses on its column"
+        fault = f"normal_force is {mean:.3g} N on average, but what rubs presses"
         return [f"{file}: {fault}; write sign = -1 in measurement.columns, or correct its zero"]
     if test.velocity is None or test.displacement is None:
         return []

@@ -20,7 +20,6 @@ from wedgesweep.diagnose.steady.spectra import Spectrum, fitted, noise_coherence
 from wedgesweep.effects import acting
 from wedgesweep.effects.channel_delay import NAME as DELAY
 from wedgesweep.measured import Measurement, TestRecord
-from wedgesweep.measured.declarations import NORMAL_FORCE
 from wedgesweep.natural_units import FREQUENCY
 
 # Effects that only a sensor of this channel can show, of the motion that is simulated.
@@ -85,7 +84,7 @@ def _with_tone(measurement: Measurement) -> tuple[tone.Tone | None, tuple[Spectr
     ]
     lowest = tone.LOWEST * measurement.model.natural_units().ratio(FREQUENCY)
     found = tone.of(acting(measurement.model.effects))
-    if NORMAL_FORCE not in measurement.columns:
+    if all(test.normal_force is None for test in measurement.tests):
         found = found or tone.find([fitted(*each) for each in records], lowest)
     return found, tuple(spectrum(*each, found.frequency if found else None) for each in records)
 
