@@ -262,6 +262,22 @@ def test_a_damper_does_not_stand_for_the_friction_of_a_shaken_mass(tmp_path):
     assert float(re.search(r"shows about (\S+) N", first)[1]) == pytest.approx(friction, rel=0.1)
 
 
+def test_a_block_on_a_shaken_table_has_no_spring(tmp_path):
+    """It slips all the time: friction accelerates it until it meets the table's velocity."""
+    files, t, friction = [], np.arange(0.0, 6.0, 1e-3), 0.5
+    for i, (size, frequency) in enumerate(((8.0, 2.0), (16.0, 3.0), (12.0, 5.0))):
+        omega = 2.0 * np.pi * frequency
+        # The block's velocity is a triangle, lowest where it meets the table's, -size cos(omega t) / omega.
+        phase = np.arccos(0.5 * np.pi * friction / size)
+        block = friction * np.sign(np.sin(omega * t - phase))
+        header = "Time (s),Table Acc (m/s^2),Block Acc (m/s^2)"
+        files.append(text(tmp_path / f"{i}.csv", t, size * np.sin(omega * t), block, header=header))
+    own = begun(tmp_path, *files).model.oscillator
+    assert (own["spring"], own["damping"]) == (0.0, 0.0)
+    shown = re.search(r"shows about (\S+) N", (tmp_path / "model.toml").read_text())
+    assert float(shown[1]) == pytest.approx(friction, rel=0.02)
+
+
 def test_a_free_motion_begins_when_it_is_let_go(tmp_path):
     text(tmp_path / "one.txt", *decay(), delimiter="\t")
     found = begun(tmp_path, tmp_path / "one.txt")
@@ -306,9 +322,10 @@ def test_channels_of_two_loggers_are_one_test(tmp_path):
     assert np.corrcoef(found.tests[0].force, f[: found.tests[0].force.size])[0, 1] > 0.99
 
 
-def test_what_drives_a_rig_is_its_input(tmp_path):
+@pytest.mark.parametrize("header", ["time_s,plate_mm,base_mm", "X,bolster_z [mm],sideframe_z [mm]"])
+def test_what_drives_a_rig_is_its_input(tmp_path, header):
+    """And what rises in even steps is time, if nothing else is, though its letter is that of a place."""
     t, d, _ = vibration()
-    header = "time_s,plate_mm,base_mm"
     text(tmp_path / "one.csv", t, d, 0.3 * np.cos(2.0 * np.pi * 20.0 * t), header=header)
     found = begun(tmp_path, tmp_path / "one.csv")
     assert found.recorded_input == "displacement"

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from tests.diagnose.synthetic import AMPLITUDES, FREQUENCIES, drawn, searched
-from wedgesweep.diagnose import stages, verdict
+from wedgesweep.diagnose import accuracy, ladder, stages, verdict
+from wedgesweep.diagnose.cross_validation import Predictor
 from wedgesweep.diagnose.parameter_constancy import _p_constant, parameter_constancy
 from wedgesweep.diagnose.projector import Projector
 from wedgesweep.diagnose.search import Search
@@ -51,6 +52,21 @@ def test_what_changes_in_the_session_is_not_named():
     _, base, found, _ = stages.explain(Search.of(data, ("friction_level",)))
     assert base.fit.excess > verdict.STRONG
     assert verdict.decide(base, found, verdict.DEFAULT).verdict == "none-of-mine"
+
+
+def test_what_changes_in_the_session_limits_the_accuracy():
+    """Noise alone would allow any accuracy. A change of 1.3 % makes errors of less than half of that."""
+    _, _, (same,) = searched(worn(1.10, 1.10), "friction_level")
+    assert accuracy.with_constant_parameters(same.fit) == 0.0
+    search, base, found, _ = stages.explain(Search.of(worn(1.10, 1.114), ("friction_level",)))
+    levels = ladder.ladder(search, base, found, Predictor(search.each))
+    assert 1e-4 < levels[1].best.accuracy < 0.5 * 0.013
+    unexplained = verdict.decide(base, found, verdict.DEFAULT)
+    finding = verdict.by_accuracy(unexplained, levels)
+    assert finding.verdict == "consistent-with"
+    assert finding.numbers["parameter"] == "friction_level.scale"
+    _, _, (worse,) = searched(worn(1.10, 1.128), "friction_level")
+    assert accuracy.with_constant_parameters(worse.fit) > 2.0 * levels[1].best.accuracy
 
 
 def test_the_base_model_and_a_single_test_have_nothing_that_could_differ():

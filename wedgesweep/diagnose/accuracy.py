@@ -19,9 +19,12 @@ from wedgesweep.diagnose.explanation import ADEQUATE
 from wedgesweep.diagnose.fit_data import FitData
 from wedgesweep.diagnose.least_squares import minimise
 from wedgesweep.diagnose.model import Fit
+from wedgesweep.diagnose.parameter_constancy import parameter_constancy
 
 # Range in which an accuracy is searched, and how closely.
 SMALLEST, LARGEST, PRECISION = 1e-6, 100.0, 1e-3
+# How closely (in its logarithm) one is searched at which parameters are constant, which takes simulations.
+ROUGHLY = 0.1
 # A fit is repeated at its accuracy until that improves by less than this share, at most this many times.
 GAINED, ROUNDS = 0.01, 3
 # Iterations of such a fit.
@@ -38,17 +41,18 @@ class Accuracy(NamedTuple):
 def smallest_adequate(chi2: Callable[[float], float], dof: float) -> float:
     """Smallest model error at which chi-squared, a falling function of it, is adequate; inf if at none."""
     limit = float(chdtri(dof, ADEQUATE))
-    if chi2(0.0) <= limit:
+    return _smallest(lambda size: log(max(chi2(size), 1e-300) / limit), PRECISION)
+
+
+def _smallest(over: Callable[[float], float], precision: float) -> float:
+    """Smallest model error at which a falling function is not above 0; inf if at none."""
+    if over(0.0) <= 0.0:
         return 0.0
-    if not chi2(LARGEST) < limit:
+    if not over(LARGEST) < 0.0:
         return inf
-    if chi2(SMALLEST) <= limit:
+    if over(SMALLEST) <= 0.0:
         return SMALLEST
-
-    def over(logarithm: float) -> float:
-        return log(max(chi2(exp(logarithm)), 1e-300) / limit)
-
-    return exp(brentq(over, log(SMALLEST), log(LARGEST), xtol=PRECISION))
+    return exp(brentq(lambda size: over(exp(size)), log(SMALLEST), log(LARGEST), xtol=precision))
 
 
 def of_response(data: FitData, evaluation: Evaluation, dof: float) -> float:
@@ -75,6 +79,17 @@ def of_fit(fit: Fit, dof: float | None = None) -> float:
         return fit.model.data.with_model_error(size).compared_again(fit.evaluation).chi2
 
     return smallest_adequate(chi2, fit.dof if dof is None else dof) if fit.evaluation.found else inf
+
+
+def with_constant_parameters(fit: Fit) -> float:
+    """Smallest model error at which the parameters of a fit may be the same in all tests; inf if at none."""
+
+    def over(size: float) -> float:
+        data = fit.model.data.with_model_error(size)
+        here = replace(fit, model=fit.model.on(data), evaluation=data.compared_again(fit.evaluation))
+        return log(ADEQUATE / max(parameter_constancy(here).p, 1e-300))
+
+    return _smallest(over, ROUGHLY)
 
 
 def refined(fit: Fit) -> Accuracy:

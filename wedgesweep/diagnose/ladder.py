@@ -6,7 +6,7 @@ from math import inf
 
 from wedgesweep.diagnose import accuracy, verdict
 from wedgesweep.diagnose.cross_validation import Predictor, held_out_accuracy
-from wedgesweep.diagnose.explanation import Explanation
+from wedgesweep.diagnose.explanation import ADEQUATE, Explanation
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.search import Search
 
@@ -115,8 +115,12 @@ def _with_held_out_accuracy(best: Rated, predict: Predictor) -> Rated:
 
 
 def _refined(each: Rated) -> Rated:
+    """An explanation fitted at its accuracy; numbers that differ from test to test make it less accurate."""
     found = accuracy.refined(each.fit)
-    return replace(each, accuracy=found.size, fit=found.fit)
+    size = found.size
+    if size == 0.0 and each.explanation.p_value < ADEQUATE:
+        size = accuracy.with_constant_parameters(found.fit)
+    return replace(each, accuracy=size, fit=found.fit)
 
 
 def by_accuracy(each: Rated) -> tuple[float, float]:

@@ -391,6 +391,8 @@ def by_accuracy(finding: Finding, levels: "Sequence[Level]") -> Finding:
     numbers: dict[str, Any] = {"accuracy": best.accuracy, "base": levels[0].best.accuracy}
     numbers |= {"next_best": _next_best(levels, size, leading[size]), "held_out": best.held_out}
     numbers |= {"rivals": _accuracies(rivals), "larger": _accuracies(close)}
+    if best.explanation.fit.p >= ADEQUATE:
+        numbers["parameter"] = best.explanation.constancy.parameter
     tied, fits = tuple(each.explanation for each in rivals), tuple(each.fit for each in close)
     return Finding(TIED if tied else CONSISTENT, Reason.MORE_ACCURATE, best.explanation, tied, numbers, fits)
 

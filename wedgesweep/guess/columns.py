@@ -31,7 +31,10 @@ SYMBOLS = {
     INPUT: r"u|in|exc",
 }
 # Words of what drives a rig, and of what it was told to do, or what is of no use here.
-DRIVES = r"input|excit|shaker|base|ground|table|driv(er|ing)|exciter|source|anreg|fuss|support|wall"
+DRIVES = (
+    r"input|excit|shaker|base|ground|table|driv(er|ing)|exciter|source|anreg|fuss|support|wall"
+    r"|side.?frame|axle|wheel|floor|foundation"
+)
 # A count of samples, which is no time.
 COUNTS = r"n|nr\.?|no\.?|#|index|samples?|points?|count(er)?|row|scan"
 NOT_MEASURED = (
@@ -141,15 +144,28 @@ def is_time(column: Column) -> bool:
     onward = float((np.diff(values) >= 0.0).mean())
     if named:
         return onward > 0.9
-    steps = np.diff(values)
     known = _names_anything(column) or unit_of(column, [TIME, *QUANTITIES])
-    even = (np.abs(steps / max(float(np.median(steps)), 1e-300) - 1.0) < UNEVEN).mean()
-    return not known and bool((steps >= 0.0).all()) and even > EVEN
+    return not known and _goes_evenly(column)
+
+
+def _goes_evenly(column: Column) -> bool:
+    """Whether numbers rise in even steps, as time does and no motion that turns back."""
+    steps = np.diff(_numbers(column))
+    even = (np.abs(steps / max(float(np.median(steps)), 1e-300) - 1.0) < UNEVEN).mean() if steps.size else 0.0
+    return bool((steps >= 0.0).all()) and even > EVEN
+
+
+def _is_abscissa(column: Column) -> bool:
+    """Whether a column may be time although its letter is that of a motion, as x of a plot; no count is."""
+    label = column.label.strip().lower()
+    named = re.fullmatch(COUNTS, label) or any(re.search(stem, label) for stem in STEMS.values())
+    whole = not np.mod(_numbers(column), 1.0).any()
+    return not (named or whole or unit_of(column, [TIME, *QUANTITIES])) and _goes_evenly(column)
 
 
 def choose(columns: Sequence[Column]) -> Run:
     """The channels among the columns of a run."""
-    time = next((column for column in columns if is_time(column)), None)
+    time = next(filter(is_time, columns), next(filter(_is_abscissa, columns), None))
     rest = [column for column in columns if column is not time and not is_time(column) and _varies(column)]
     load = next(filter(_presses, columns), None)
     channels = _by_name([column for column in rest if column is not load])

@@ -96,9 +96,12 @@ def _free(tests: Sequence[TestRecord], restoring: Restoring) -> tuple[float, Num
 
 def _fitted(design: np.ndarray, force: np.ndarray) -> tuple[float, list[float]]:
     """Share of a force (n,) that the parts (n, k) of it leave, and their factors, which are >= 0."""
-    size = np.maximum(np.linalg.norm(design, axis=0), 1e-300)
-    factors, left = nnls(design / size, force)
-    return float(left / max(np.linalg.norm(force), 1e-300)), (factors / size).tolist()
+    size, whole = (
+        np.maximum(np.linalg.norm(design, axis=0), 1e-300),
+        max(float(np.linalg.norm(force)), 1e-300),
+    )
+    parts, left = nnls(design / size, force)
+    return float(left / whole), np.where(parts < LEAST * whole, 0.0, parts / size).tolist()
 
 
 def _frequency(test: TestRecord) -> float:
@@ -250,7 +253,6 @@ def _on_base(tests: tuple[TestRecord, ...], measurement: Measurement) -> Numbers
     name = next(iter(tests[0].responses))
     relative = measurement.motion_of(name) == RELATIVE
     _, (spring, damping, friction) = _shaken(tests, name, relative, str(measurement.recorded_input))
-    spring = spring or (2.0 * pi * float(np.median([_frequency(test) for test in tests]))) ** 2
     return Numbers(1.0, spring, damping, friction, unseen=("mass",))
 
 
@@ -270,7 +272,8 @@ def _shaken(
     """What spring, damper and friction over the mass leave of its acceleration where it has power, and they.
 
     ``relative``: whether the response is the motion against the base, whose ``quantity`` is recorded.
-    Friction opposes velocity as a damper does; that it does not grow with it shows across tests.
+    Friction opposes velocity as a damper does, and less of it where the mass sticks. So there is no damper
+    unless it explains the records clearly better: effects can add one but take none away.
     """
     rows, values = [], []
     for test in tests:
@@ -288,7 +291,11 @@ def _shaken(
         row = -np.column_stack([stretch[used], velocity[used], direction[used]]) / np.linalg.norm(value)
         rows += [row.real, row.imag]
         values += [value.real / np.linalg.norm(value), value.imag / np.linalg.norm(value)]
-    return _fitted(np.vstack(rows), np.concatenate(values))
+    design, value = np.vstack(rows), np.concatenate(values)
+    left, found = _fitted(design, value)
+    if not left < CLEARLY * _fitted(design[:, [0, 2]], value)[0]:
+        found[1] = 0.0
+    return left, found
 
 
 def _frequencies(signal: np.ndarray, rate: float) -> np.ndarray:

@@ -107,6 +107,8 @@ def _most_accurate(result: DiagnosisResult) -> str:
         f"To {size} of the response {_causes(result)} {explain} all tests{tied} (without: {base}; {rivals})"
     )
     noise = "" if why.get("larger") else ", though no explanation reaches the noise"
+    if why.get("parameter"):
+        noise = f", though within the noise {why['parameter']} differs from test to test"
     return f"{found}{noise}: {_improvement(result)}{_larger(result)}."
 
 
