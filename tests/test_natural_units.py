@@ -55,6 +55,15 @@ def test_fits_start_at_the_same_places_of_their_ranges(name, size):
         np.testing.assert_allclose(rig.at({name: found}), bench.at({name: known}), rtol=1e-9, atol=1e-12)
 
 
+def test_amplitudes_start_on_either_side_beside_a_logarithm_and_at_zero_without():
+    """Where amplitudes are zero every wavelength gives the same response."""
+    assert not Hypothesis(("input_distortion",)).starts().any()
+    *first, length, cosine, sine = Hypothesis(("position_friction",)).starts().T
+    assert len(set(length)) == 4
+    signs = np.sign([*first, cosine, sine])
+    assert len(set(map(tuple, signs.T))) == 16
+
+
 @pytest.mark.parametrize("size", RIGS.values(), ids=RIGS)
 def test_numbers_that_are_not_fitted_are_in_proportion(size):
     """Load at which friction is nominal, mass of a column, width of a regularised ramp."""

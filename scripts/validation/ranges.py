@@ -63,6 +63,7 @@ OF_DAMPERS = {
     "degressive_damping": Leading("coefficient_N_s_per_m", 1e-3, 180.0),
     "asymmetric_spring": Leading("asymmetry", 1e-4, 0.8, 0.0, 0.5),
     "position_friction": Leading("share", 1e-4, 0.8),
+    "maxwell_presliding": Leading("force_N", 1e-3, 5.0),
 }
 # Candidates that no campaign hides: they came later than the sets on record, which stay as they are.
 NOT_HIDDEN = ("jamming", "input_gain", "force_gain", "channel_delay")
@@ -79,6 +80,12 @@ OTHERS: dict[str, dict[str, tuple[float, float, str]]] = {
     "position_friction": {
         "share_phase_deg": (-175.0, 175.0, UNIFORM),
         "wavelength_mm": (2.0, 10.0, LOGARITHMIC),
+        "second": (0.0, 0.5, GROWING),
+        "second_phase_deg": (-175.0, 175.0, UNIFORM),
+    },
+    "maxwell_presliding": {
+        "stiffness_N_per_mm": (10.0, 200.0, LOGARITHMIC),
+        "spread": (0.0, 2.5, UNIFORM),
     },
     "degressive_damping": {
         "velocity_mm_per_s": (5.0, 50.0, LOGARITHMIC),

@@ -300,7 +300,11 @@ OF_DAMPERS = {
     "series_compliance": {"stiffness": 1e5, "coefficient": 500.0},
     "degressive_damping": {"coefficient": 8e3, "velocity": 0.02, "asymmetry": 0.3},
     "asymmetric_spring": {"asymmetry": 0.3},
-    "position_friction": {"share": 0.5, "share_phase": 0.5, "wavelength": 0.04},
+    "position_friction": {
+        **{"share": 0.5, "share_phase": 0.5, "wavelength": 0.04},
+        **{"second": 0.3, "second_phase": -1.0},
+    },
+    "maxwell_presliding": {"force": 100.0, "stiffness": 1e5, "spread": 1.5},
 }
 NEIGHBOURS = (
     *("friction_level", "viscous_damping", "directional_damping", "quadratic_drag", "damper_play"),
@@ -310,7 +314,9 @@ NEIGHBOURS = (
 
 # ``make validate`` hides each of them (campaign damper).
 @pytest.mark.acceptance
-@pytest.mark.parametrize("effect", ["series_compliance", "degressive_damping"])
+@pytest.mark.parametrize(
+    "effect", ["series_compliance", "degressive_damping", "position_friction", "maxwell_presliding"]
+)
 def test_what_is_missing_of_a_damper_is_found_among_its_neighbours(tmp_path, effect):
     hidden = OF_DAMPERS[effect]
     path = write(tmp_path, STRUT, {effect: hidden}, motions=((0.01, 1.1, 6.0),), noise=(1e-6, 0.5))

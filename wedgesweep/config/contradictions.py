@@ -111,13 +111,13 @@ def _oscillator(document: Mapping[str, Any]) -> Iterator[str]:
 
 def _with_damping(document: Mapping[str, Any]) -> Iterator[str]:
     """What a damper needs whose damping and friction are both behind a spring."""
-    given, own = document.get("effects", {}).get(WITH_DAMPING), document["oscillator"]
-    if given is None:
-        return
+    own = document["oscillator"]
     moves = document.get("sweep", {}).get("excitation") != "force" and not is_force(document.get("input", {}))
-    if own.get("contact") == "ground" and moves:
+    for name in set(WITH_DAMPING).intersection(document.get("effects", {})):
+        if own.get("contact") != "ground" or not moves:
+            continue
         yield (
-            f"effects.{WITH_DAMPING}: damping follows the base, friction the ground: no rod has both; write "
+            f"effects.{name}: damping follows the base, friction the ground: no rod has both; write "
             'contact = "base", or excitation = "force"'
         )
 

@@ -154,10 +154,12 @@ class Config:
             yield oscillator.OF_SPRING, "acts on a spring, and the model has none"
         if self.forced:
             yield (oscillator.OF_BASE,), "moves the base, which is at rest under a force"
-        if self.oscillator["contact"] == oscillator.BELT or not (rubs or self.oscillator["damping"]):
-            yield oscillator.OF_ROD, "needs a rod to a damper, and the model has none"
+        belt = self.oscillator["contact"] == oscillator.BELT
+        if belt or not (rubs or self.oscillator["damping"]):
+            rods = [name for name in oscillator.OF_ROD if belt or name != oscillator.OF_MANY_STATES]
+            yield rods, "needs a rod to a damper, and the model has none"
         if self.oscillator["contact"] == oscillator.GROUND and not self.forced:
-            yield (oscillator.WITH_DAMPING,), "needs friction and damping that follow the same body"
+            yield oscillator.WITH_DAMPING, "needs friction and damping that follow the same body"
         for law in self.sweep.laws:
             yield oscillator.OF_LAW.get(law, ()), f"has no place in the law {law}"
 

@@ -23,8 +23,9 @@ PHASE = "_phase_deg"
 FIRST, FURTHER = 12, 4
 # Grid points closest to and farthest from a neutral value, as shares of the range.
 CLOSEST, FARTHEST = 4e-3, 0.8
-# With more parameters (amplitudes with phases) the response is linear enough to start at zero.
-MOST_GRIDDED = 3
+# With more parameters (amplitudes with phases) the response is linear enough to start at zero; not so beside
+# one that is fitted as its logarithm: amplitudes then start on either side, at this share of their range.
+MOST_GRIDDED, WELL_INSIDE = 3, 0.4
 # Scale of a logarithm, and scale of other parameters as a share of their range.
 LOG_SCALE, RANGE_SCALE = 0.5, 0.1
 # Effects by name, and their numbers by name (SI) or by key (in its unit).
@@ -81,6 +82,11 @@ class FitParameter:
         spans = [end - self.neutral for end in (self.low, self.high) if abs(end - self.neutral) > 0.0]
         shares = np.geomspace(CLOSEST, FARTHEST, points // len(spans))
         return np.concatenate([self.neutral + span * shares for span in spans])
+
+    def ends(self) -> np.ndarray:
+        """Points (2,) or (1,) on both sides of a neutral value, WELL_INSIDE of the range."""
+        spans = [end - self.neutral for end in (self.low, self.high) if abs(end - self.neutral) > 0.0]
+        return self.neutral + WELL_INSIDE * np.array(spans)
 
 
 def _split(effect: str) -> Iterator[tuple[Quantity, Quantity | None]]:
@@ -204,7 +210,10 @@ class Hypothesis:
 
     def starts(self) -> np.ndarray:
         """Points (n, k) from which a fit may start."""
-        if len(self.parameters) > MOST_GRIDDED:
+        if len(self.parameters) <= MOST_GRIDDED:
+            grids = [each.grid(FURTHER if i else FIRST) for i, each in enumerate(self.parameters)]
+        elif any(each.logarithmic for each in self.parameters):
+            grids = [each.grid(FURTHER) if each.logarithmic else each.ends() for each in self.parameters]
+        else:
             return np.clip(np.zeros(len(self.parameters)), self.low, self.high)[None]
-        grids = [each.grid(FURTHER if i else FIRST) for i, each in enumerate(self.parameters)]
         return np.array(list(product(*grids)))

@@ -20,7 +20,8 @@ NAMES = (
     lift_off.NAME,
     *("jamming", "damper_play", "series_compliance"),
     *("viscous_damping", "directional_damping", "quadratic_drag", "degressive_damping"),
-    *("cubic_stiffness", "asymmetric_spring", "backlash", "guide_friction", "end_stop", "empirical_force"),
+    *("cubic_stiffness", "asymmetric_spring", "backlash", "guide_friction", "maxwell_presliding", "end_stop"),
+    "empirical_force",
     *("input_distortion", "stray_vibration", "fixture_resonance"),
     *("velocity_lag", "displacement_gain", "input_gain", "force_gain", "channel_delay"),
 )

@@ -13,10 +13,13 @@ from wedgesweep.hybrid.vectors import replaced
 
 # Kinds, and their natural sizes.
 LENGTH, VELOCITY, SHARE, TIME = "length", "velocity", "share", "time"
+# A share that an imposed motion changes in closed form (``moved_freely``).
+SLIDER = "slider"
 SIZES = {
     LENGTH: "input_length(p)",
     VELOCITY: "input_length(p) * p.input.omega",
     SHARE: "1.0",
+    SLIDER: "1.0",
     TIME: "2.0 * pi / p.input.omega",
 }
 # Displacement from rest and velocity of the mass.
@@ -136,9 +139,14 @@ def velocities(p):
     """Whether each state is a velocity."""
 
 
-@_of_all(dict.fromkeys(SIZES, "False") | {SHARE: "True"})
+@_of_all(dict.fromkeys(SIZES, "False") | {SHARE: "True", SLIDER: "True"})
 def bristles(p):
     """Whether each state is a share of the largest deflection of bristles."""
+
+
+@_of_all(dict.fromkeys(SIZES, "False") | {SLIDER: "True"})
+def sliders(p):
+    """Whether each state has a closed form under an imposed motion."""
 
 
 def active(p):

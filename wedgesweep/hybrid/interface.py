@@ -136,6 +136,11 @@ def bristles(p):
 
 
 @required
+def sliders(p):
+    """Which states ``moved_freely`` changes in closed form, a vector of booleans."""
+
+
+@required
 def free(y, p):
     """Which states may take other values near y, a vector of booleans: not those that a contact holds."""
 

@@ -21,6 +21,7 @@ from wedgesweep.hybrid.interface import (
     rate,
     scales,
     share_before_jump,
+    sliders,
 )
 from wedgesweep.hybrid.vectors import replaced, vector
 from wedgesweep.systems import grouped
@@ -237,9 +238,11 @@ def _moved(y, change, step, p):
 def _advanced(y, step, p):
     """The state vector with the effects' own states after a step, by their rates."""
     mode = initial_mode(0.0, y, p)[0]
-    now, size = rate(0.0, y, mode, p)[0], scales(p)
+    now, size, moving, closed = rate(0.0, y, mode, p)[0], scales(p), active(p), sliders(p)
     following = y
     for place in range(GIVEN, len(y)):
+        if closed[place] or not moving[place]:
+            continue
         moved = DIFFERENCE * size[place]
         beside = rate(0.0, replaced(y, place, y[place] + moved), mode, p)[0]
         growth = step * (beside[place] - now[place]) / moved

@@ -20,6 +20,7 @@ def implement_shared(owner: str) -> None:
         (interface.active, states.active),
         (interface.clocks, states.clocks),
         (interface.bristles, states.bristles),
+        (interface.sliders, states.sliders),
         (interface.cycle, excitation.cycle),
         (interface.repeats, repeats),
     ):

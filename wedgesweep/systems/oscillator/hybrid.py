@@ -9,6 +9,7 @@ from wedgesweep.effects import (
     damper_play,
     directional_friction,
     hooks,
+    maxwell_presliding,
     series_compliance,
     states,
     travel,
@@ -130,6 +131,7 @@ def share_before_jump(y, step, p):
 def moved_freely(y, following, change, step, p):
     """The rod of a damper moves between the ends of its play, or pulls its spring."""
     following = series_compliance.moved(y, following, slip(y, p), change, step, p)
+    following = maxwell_presliding.moved(y, following, step, p)
     return damper_play.with_rod(following, damper_play.rod_after(y, slip(y, p) * step, p), p)
 
 
@@ -208,6 +210,12 @@ def events(now, t, y, mode, p, out):
 
 
 @inlined
+def _directed(p):
+    """Whether the equations change where the slip reverses, on a ramp, too."""
+    return directional_friction.acts(p) or maxwell_presliding.acts(p)
+
+
+@inlined
 def _slipping(direction, y, segment, clock, p):
     """Mode of slip in a direction; ``clock`` = 1: about to slip, still at rest.
 
@@ -215,7 +223,7 @@ def _slipping(direction, y, segment, clock, p):
     """
     if direction * damper_play.side(y, p) < 0:
         return _crossing(segment)
-    return Mode(direction, direction if directional_friction.acts(p) else 0, segment, clock)
+    return Mode(direction, direction if _directed(p) else 0, segment, clock)
 
 
 @inlined
@@ -280,7 +288,7 @@ def _mode_at(t, y, segment, p):
         return _behind_spring(series_compliance.branch(y, p), segment)
     rubbing = slip(y, p)
     sign = 1 if rubbing >= 0.0 else -1
-    direction = sign if directional_friction.acts(p) else 0
+    direction = sign if _directed(p) else 0
     if damper_play.acts(p) and (damper_play.side(y, p) == 0 or damper_play.side(y, p) * rubbing < 0.0):
         return _crossing(segment)
     if p.friction.set_valued:
@@ -345,5 +353,5 @@ def _transition(t, y, mode, place, p):
 @inner
 def transition(t, y, mode, place, p):
     """State and mode after an event: set-valued friction stops the slip, and slip ends the time at rest."""
-    y, found = _transition(t, y, mode, place, p)
+    y, found = _transition(t, maxwell_presliding.slipped(y, p), mode, place, p)
     return y if found.clock else ageing.rejuvenated(y, p), found, True

@@ -18,8 +18,8 @@ class Mode(NamedTuple):
 
     ``column``: slip branch (-1, 0, 1, or +-HELD) of the rubbing face, by the name that effects know; 0 is
     stuck under a set-valued law; CROSSING: a rod crosses its play, and nothing rubs. ``direction``: sign of
-    the slip where friction depends on it, else 0. ``segment`` of the travel: see effects/travel.py.
-    ``clock``: 1 while the time at rest runs.
+    the slip where friction depends on it, or on its reversals, else 0. ``segment`` of the travel: see
+    effects/travel.py. ``clock``: 1 while the time at rest runs.
     """
 
     column: int

@@ -1,8 +1,8 @@
 """Everything that one case of the oscillator depends on, as one value: a record in SI units.
 
-As for the suspension, Python holds the full record, and compiled code gets the smaller one of two kits:
-without effects that add forces, coefficients, states or events of their own, or with all effects; with or
-without the Fourier series of a recorded input.
+As for the suspension, Python holds the full record, and compiled code gets the smallest of three kits:
+without effects that add forces, coefficients, states or events of their own, with all effects but that of
+many states, or with all; with or without the Fourier series of a recorded input.
 """
 
 from collections.abc import Iterable, Mapping
@@ -67,8 +67,10 @@ OF_FRICTION = (
     "position_friction",
 )
 # Those that need a rod between the mass and what damps it, and those of them behind which all damping is.
-OF_ROD = ("damper_play", "series_compliance")
-WITH_DAMPING = "series_compliance"
+OF_ROD = ("damper_play", "series_compliance", "maxwell_presliding")
+WITH_DAMPING = ("series_compliance", "maxwell_presliding")
+# Its states would slow down all other effects: it has a kit of its own.
+OF_MANY_STATES = "maxwell_presliding"
 # Effects that a law has no place for.
 OF_LAW = {
     "lugre": ("stribeck", "presliding", "ageing", "guide_friction", *OF_ROD),
@@ -84,12 +86,15 @@ def effect_names() -> tuple[str, ...]:
 
 
 @cache
-def _kits(names: tuple[str, ...], series: bool) -> tuple[np.dtype, np.dtype]:
+def _kits(names: tuple[str, ...], series: bool) -> tuple[np.dtype, np.dtype, np.dtype]:
     """Record types by kit, with or without the Fourier series of an input."""
     simple = [name for name in names if not known.EFFECTS[name].extends]
     part = records.SERIES if series else []
     more = [(own.NAME, [(name, np.float64) for name in own.NUMBERS]) for own in (bristles, pendulum)]
-    return _dtype([(PLAIN, np.int64), *part], simple), _dtype([*part, *more], names)
+    few = [name for name in names if name != OF_MANY_STATES]
+    kits = ([(PLAIN, np.int64), *part], simple), ([*part, *more], few), ([*part, *more], names)
+    plain, most, everything = (_dtype(*each) for each in kits)
+    return plain, most, everything
 
 
 def _dtype(parts: list[tuple], names: Iterable[str]) -> np.dtype:
@@ -154,7 +159,8 @@ def record(
     swings = oscillator.get("restoring_force") == PENDULUM
     p["input_gain"]["scale"] *= oscillator.get(COUPLING.name, 1.0)
     p[pendulum.NAME]["stiffness"] = own["spring"] if swings else 0.0
-    own["kit"] = bool(records.acting(p, parts)) or law == bristles.NAME or swings
+    acting = records.acting(p, parts)
+    own["kit"] = 2 if OF_MANY_STATES in acting else bool(acting) or law == bristles.NAME or swings
     if law == bristles.NAME:
         _set_bristles(p, oscillator)
     if p["presliding"]["length"] > 0.0 or p["series_compliance"]["stiffness"] > 0.0:
