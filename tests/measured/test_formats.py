@@ -396,3 +396,16 @@ def test_more_rows_than_are_used(tmp_path):
     test = read_with(tmp_path, ("one.csv", "one.npy"), *NUMBERED)
     assert test.remarks[-1] == "low-passed and decimated from 310000 samples to one in 2"
     assert abs(test.displacement[5000:9000].std() * np.sqrt(2.0) - 1e-3) < 1e-6
+
+
+def test_a_long_free_motion_keeps_a_hundred_samples_per_period(tmp_path):
+    t = np.arange(22_000) / 50_000.0
+    swing = 1e-3 * np.exp(-3.0 * t) * np.cos(2.0 * np.pi * 50.0 * t)
+    rows = np.column_stack([t, 1e3 * swing, np.gradient(1e3 * swing, t)])
+    np.save(tmp_path / "one.npy", rows)
+    free = ("frequency_hz = 20.0\namplitude_mm = 0.3\namplitude_std = 0.01", 'kind = "transient"')
+    test = read_with(tmp_path, ("one.csv", "one.npy"), *NUMBERED, free)
+    assert test.remarks[-1] == "low-passed and decimated from 22000 samples to one in 10"
+    kept = test.time - test.time[0]
+    begun = np.interp(kept + t[200], t, swing)  # the filter takes 20 of the samples that remain at either end
+    np.testing.assert_allclose(test.displacement, begun, atol=2e-8)

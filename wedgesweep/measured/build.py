@@ -34,6 +34,9 @@ LARGEST, SMALLEST, ROUNDING = 1e12, 1e-15, 1e-13
 CONSTANT = ("time", KNOWN_FORCE, NORMAL_FORCE)
 # Samples per period that must remain, so that all harmonics that are compared pass the filter unchanged.
 FEWEST_PER_PERIOD = 200
+# A free motion of more samples keeps so many per period: eight harmonics of it are compared, and jumps of
+# friction still show. What has fewer periods than SLOWEST in a record is drift.
+MOST_OF_FREE, PER_PERIOD, SLOWEST = 20_000, 100, 3
 # Half length of the filter in samples that remain, edge of its pass band over the new Nyquist frequency, and
 # beta of its Kaiser window: stop band and ripple of -118 dB (Oppenheim and Schafer, Discrete-Time Signal
 # Processing, sec. 7.5).
@@ -151,10 +154,21 @@ def _straightened(time: np.ndarray, samples: np.ndarray, frequency: float) -> np
 def _limited(
     given: Mapping[str, Any], columns: dict[str, np.ndarray], time: np.ndarray, frequency: float
 ) -> tuple[dict[str, np.ndarray], np.ndarray, str]:
-    """A steady record of at most MOST_SAMPLES, the times, and a remark if samples were left out."""
-    if time.size <= MOST_SAMPLES or given.get("kind", STEADY) != STEADY:
-        return columns, time, ""
-    return shortened(columns, time, frequency, MOST_SAMPLES)
+    """A record of as many samples as its kind needs, the times, and a remark if samples were left out."""
+    kind = given.get("kind", STEADY)
+    if kind == STEADY and time.size > MOST_SAMPLES:
+        return shortened(columns, time, frequency, MOST_SAMPLES)
+    if kind == TRANSIENT and INPUT not in columns and time.size > MOST_OF_FREE:
+        periods = max(map(_periods, columns.values()))
+        factor = int(time.size / (PER_PERIOD * periods))
+        return _thinned(columns, time, factor) if factor > 1 else (columns, time, "")
+    return columns, time, ""
+
+
+def _periods(samples: np.ndarray) -> int:
+    """Periods in samples (n,) of the frequency that has most of their power."""
+    power = np.abs(np.fft.rfft(samples - samples.mean()))
+    return SLOWEST + int(power[SLOWEST:].argmax())
 
 
 def shortened(
@@ -181,6 +195,13 @@ def shortened(
     if not isfinite(frequency) or rate / factor < FEWEST_PER_PERIOD * frequency:
         remark = f"cut to the first {most} of {time.size} samples"
         return {name: samples[:most] for name, samples in columns.items()}, time[:most], remark
+    return _thinned(columns, time, factor)
+
+
+def _thinned(
+    columns: Mapping[str, np.ndarray], time: np.ndarray, factor: int
+) -> tuple[dict[str, np.ndarray], np.ndarray, str]:
+    """Channels and their times after a low-pass, one sample in a factor, and a remark."""
     kept = slice(HALF_LENGTH, -HALF_LENGTH)
     thinned = {name: _decimated(samples, factor)[kept] for name, samples in columns.items()}
     remark = f"low-passed and decimated from {time.size} samples to one in {factor}"
