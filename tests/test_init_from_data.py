@@ -322,6 +322,24 @@ def test_channels_of_two_loggers_are_one_test(tmp_path):
     assert np.corrcoef(found.tests[0].force, f[: found.tests[0].force.size])[0, 1] > 0.99
 
 
+def test_a_model_turns_where_its_units_were_corrected(tmp_path):
+    """Counts of an encoder are an angle; what no name tells is a length until somebody says otherwise."""
+    t, d, f = loop()
+    text(tmp_path / "one.csv", t, d, f, header="t,position,effort")
+    invoke("init", tmp_path / "measured.toml", "--data", tmp_path / "one.csv")
+    path = tmp_path / "measured.toml"
+    path.write_text(
+        path.read_text().replace('unit = "mm"', 'unit = "rad"').replace('unit = "N"', 'unit = "N m"')
+    )
+    invoke("init", tmp_path / "model.toml", "--data", path, "--force")
+    model = measured.read(path).model
+    assert model.turns
+    assert model.oscillator["mass"] == pytest.approx(3e-3, rel=0.15)  # 1 rad where 1 mm was
+    text(tmp_path / "two.csv", t, d, f, header="t,encoder_counts,current_mA")
+    invoke("init", tmp_path / "measured.toml", "--data", tmp_path / "two.csv", "--force")
+    assert "how many deg are 1 counts" in path.read_text()
+
+
 @pytest.mark.parametrize("header", ["time_s,plate_mm,base_mm", "X,bolster_z [mm],sideframe_z [mm]"])
 def test_what_drives_a_rig_is_its_input(tmp_path, header):
     """And what rises in even steps is time, if nothing else is, though its letter is that of a place."""

@@ -1,8 +1,10 @@
 """Writes a first measured.toml and its model for the files of a measurement."""
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 
@@ -60,9 +62,23 @@ def write(path: Path, files: Sequence[Path]) -> list[Path]:
 
 def write_model(path: Path, data: Path) -> None:
     """Write a model with the numbers that the records of a measured.toml show; raises InputError."""
-    measurement = measured.read(data)
+    measurement = _read(data)
     found, model = numbers(measurement), measurement.model
     write_text(path, document.model(found, model.forced, model.turns))
+
+
+def _read(data: Path) -> Measurement:
+    """A measurement under its model or, if its units have become those of a rotation, one that turns."""
+    try:
+        return measured.read(data)
+    except InputError:
+        with TemporaryDirectory() as folder:
+            turning = Path(folder) / MODEL
+            for forced in (True, False):
+                turning.write_text(document.model(UNKNOWN, forced, turns=True))
+                with suppress(InputError):
+                    return measured.read(data, turning)
+        raise
 
 
 def _with_signs(tests: Sequence[Guessed], measurement: Measurement) -> list[Guessed]:
