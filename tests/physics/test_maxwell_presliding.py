@@ -144,6 +144,36 @@ def test_a_mass_held_by_elements_that_do_not_slip_swings_on_their_springs():
 
 
 @pytest.mark.acceptance
+@pytest.mark.parametrize("law", ["coulomb", "exponential"])
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_two_half_swings_lose_the_work_of_a_first_loading_and_of_a_branch(solver, law):
+    """From A to -B the force is that of a first loading, back to C that of a branch by Masing's rules."""
+    start, stiffness, spread = 2e-3, 4.0 * K, 1.0
+    effect = {"force": 0.25 * K * start, "stiffness": stiffness, "spread": spread}
+    numbers = oscillator(normal_force=0.0)
+    record = parameters.record(
+        law, 1e-12, OMEGA_N, numbers, coulomb(0.3), {"maxwell_presliding": effect}, "force"
+    )
+    window = Window(OMEGA_N, 0, 2, 8192)
+    motion = -SOLVERS[solver].solve(record, window, 1e-10, inf, start=(start, 0.0)).samples.x
+    down = motion.argmin()
+    up = down + motion[down : down + 6000].argmax()
+    way = np.linspace(0.0, 2.0 * start, 40001)
+    scale = effect["force"] / FORCE * STIFFNESS / stiffness
+    first = effect["force"] / FORCE * backbone(way / scale, spread)
+    branch = 2.0 * effect["force"] / FORCE * backbone(0.5 * way / scale, spread)
+
+    def lost(travel, taken):
+        return np.trapezoid(taken[way <= travel], way[way <= travel])
+
+    low, high = -motion[down], motion[up]
+    assert first[way <= start + low][-1] == pytest.approx(effect["force"])  # all elements slip
+    energy = 0.5 * K * np.array([start**2 - low**2, low**2 - high**2])
+    taken = [lost(start + low, first), lost(low + high, branch - effect["force"])]
+    assert energy == pytest.approx(taken, rel=1e-3)
+
+
+@pytest.mark.acceptance
 @pytest.mark.parametrize("spread", SPREADS)
 def test_an_imposed_motion_takes_the_same_force(spread):
     """Means over samples near reversals aside, and from the end of the first half cycle on."""
