@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.stats import chi2
 
-from wedgesweep.diagnose import diagnosis, verdict
+from wedgesweep.diagnose import diagnosis, ladder, verdict
 from wedgesweep.diagnose.explanation import POSSIBLE, Explanation
 from wedgesweep.diagnose.ladder import Level, Rated
 from wedgesweep.diagnose.parameter_constancy import Constancy
@@ -516,3 +516,13 @@ def test_a_verdict_claims_no_more_than_was_done(found, searched, confirmed, expe
     after = verdict.as_far_as_done(before, searched, confirmed)
     assert (after.verdict, after.best) == (expected, before.best)
     assert (after.reason is Reason.UNCHECKED) == (expected != found)
+
+
+@pytest.mark.parametrize(("elastic", "kept"), [(0.04, False), (0.01, True)])
+def test_elastic_friction_is_rated_where_it_clearly_surpasses_rigid_friction(elastic, kept):
+    """It comes as close to rigid friction as it likes, alone and beside others."""
+    for others in ((), ("directional_damping",)):
+        rigid = rated(0.05, "guide_friction", *others)
+        other = rated(elastic, "maxwell_presliding", *others)
+        found = ladder._surpassing_limits([rigid, other])
+        assert found == ([rigid, other] if kept else [rigid])

@@ -9,6 +9,7 @@ from wedgesweep.diagnose.cross_validation import Predictor, held_out_accuracy
 from wedgesweep.diagnose.explanation import ADEQUATE, Explanation
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.search import Search
+from wedgesweep.effects import EFFECTS
 
 # The most accurate explanations of each size are refined, that is fitted again at their accuracy: at most so
 # many at a time, and at first only those within this factor of the best.
@@ -63,9 +64,21 @@ class Level:
 def rough_ladder(search: Search, base: Explanation, explanations: Sequence[Explanation]) -> tuple[Level, ...]:
     """Rate the base model and every eligible explanation where its fit ended, without simulations."""
     allowed = [base, *filter(verdict.eligible, explanations)]
-    rated = sorted(search.each(rated_where_it_ended, allowed), key=by_accuracy)
+    rated = sorted(_surpassing_limits(search.each(rated_where_it_ended, allowed)), key=by_accuracy)
     sizes = sorted({len(each.effects) for each in rated})
     return tuple(Level(tuple(each for each in rated if len(each.effects) == size)) for size in sizes)
+
+
+def _surpassing_limits(rated: Sequence[Rated]) -> list[Rated]:
+    """Explanations without those that hardly gain on one with a limit of an effect in its place."""
+    accuracies = {frozenset(each.effects): each.accuracy for each in rated}
+
+    def hardly(each: Rated) -> bool:
+        effects = frozenset(each.effects)
+        simpler = (effects - {name} | {limit} for name in effects for limit in EFFECTS[name].limits)
+        return any(accuracies.get(one, inf) < verdict.CLEAR * each.accuracy for one in simpler)
+
+    return [each for each in rated if not hardly(each)]
 
 
 def ladder(

@@ -31,10 +31,11 @@ class Effect:
     At the neutral value of each quantity the effect is absent, bit for bit. ``extends`` names the quantities
     that add forces, coefficients, states or events to the base model when they are not off. An effect
     without any is one that the base model's mechanics can do. ``contains``: effects that are special cases
-    of this one. ``systems``: those that have the part which it acts on. ``excludes``: effects that cannot be
-    in one model with it. ``acts_on``: effects whose force it changes; in a model without other friction it
-    shows beside them only. ``of_loops``: a diagnosis looks for it in loops; beside other tests only
-    where it is asked to.
+    of this one; ``limits``: those of them that an effect must clearly surpass to be rated beside them, as it
+    comes as close to them as it likes. ``systems``: those that have the part which it acts on. ``excludes``:
+    effects that cannot be in one model with it. ``acts_on``: effects whose force it changes; in a model
+    without other friction it shows beside them only. ``of_loops``: a diagnosis looks for it in loops; beside
+    other tests only where it is asked to.
     ``meaning`` may hold names of PARTS in braces; see ``described``.
     """
 
@@ -45,6 +46,7 @@ class Effect:
     quantities: tuple[Quantity, ...]
     extends: tuple[str, ...] = ()
     contains: tuple[str, ...] = ()
+    limits: tuple[str, ...] = ()
     systems: tuple[str, ...] = SYSTEMS
     excludes: tuple[str, ...] = ()
     acts_on: tuple[str, ...] = ()

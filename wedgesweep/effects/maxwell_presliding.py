@@ -41,6 +41,7 @@ EFFECT = Effect(
     of_loops=True,
     excludes=("damper_play", "series_compliance"),
     contains=("guide_friction",),
+    limits=("guide_friction",),
     meaning="dry friction behind springs that slip one after the other (Maxwell, Iwan)",
     quantities=(
         Quantity("force_N", 0.0, "friction force where all elements slip", minimum=0.0, search=(0.0, 10.0)),
