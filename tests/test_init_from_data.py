@@ -233,6 +233,19 @@ def test_a_load_that_one_file_lacks_is_not_used(tmp_path):
     assert '"Load N"' in (tmp_path / "measured.toml").read_text()
 
 
+def test_friction_that_differs_from_file_to_file_is_no_damping(tmp_path):
+    """As that of a damper with a current, or of a seal under pressure."""
+    files = []
+    for friction, size in ((60.0, 0.5), (5.0, 1.0)):
+        t, d, f = loop(friction=friction)
+        _, _, less = loop(friction=0.0)
+        files.append(text(tmp_path / f"{friction}.csv", t, size * d, size * less + f - less, header="t,d,F"))
+    own = begun(tmp_path, *files).model.oscillator
+    assert own["damping"] == pytest.approx(40.0, rel=0.15)
+    shown = re.search(r"shows about (\S+) N", (tmp_path / "model.toml").read_text())
+    assert float(shown[1]) == pytest.approx(32.5, rel=0.05)
+
+
 @pytest.mark.acceptance
 def test_a_damper_does_not_stand_for_the_friction_of_a_shaken_mass(tmp_path):
     files, t, spring, damping, friction = [], np.arange(4000) / 250.0, 1400.0, 2.3, 1.2
@@ -286,6 +299,16 @@ def test_a_free_motion_begins_when_it_is_let_go(tmp_path):
     assert test.time[0] == pytest.approx(0.2, abs=0.05)
     natural = np.sqrt(found.model.oscillator["spring"] / found.model.oscillator["mass"])
     assert natural == pytest.approx(2.0 * np.pi * 4.0, rel=0.05)
+
+
+def test_a_release_on_the_clock_of_a_telephone(tmp_path):
+    """Nanoseconds since 1970, and a rate of a gyroscope without a unit, which can be no length."""
+    t, x = decay()
+    stamps = 1731234567.8e9 + 1e9 * t
+    text(tmp_path / "one.csv", stamps, np.gradient(1e-2 * x, t), header="timestamp_ns,gyro_z")
+    found = begun(tmp_path, tmp_path / "one.csv")
+    assert found.model.turns
+    assert 2.7 < found.tests[0].duration < 3.1  # let go after 0.2 s of 3.2 s
 
 
 def test_a_force_that_gives_out_energy_is_turned(tmp_path):

@@ -24,7 +24,7 @@ def _prefixed(unit: str, prefixes: str) -> dict[str, float]:
 
 # Sizes in SI of the units of each quantity; angles, of an oscillator that turns, stand in place of lengths.
 UNITS = {
-    "time": {"s": 1.0, "ms": 1e-3, "us": 1e-6, "min": 60.0, **DATES},
+    "time": {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0, **DATES},
     "displacement": {
         **_prefixed("m", "mucnk"),
         **{"in": INCH, "mil": 1e-3 * INCH, "ft": FOOT},

@@ -1,6 +1,7 @@
 """The accuracy of a model is the relative model error that was planted, whatever its shape and unit."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -137,3 +138,19 @@ def test_explanations_on_copies_of_the_data_are_rated(monkeypatch):
     ]
     _, one = ladder.ladder(search, base, [Explanation(fit) for fit in copies], Predictor(search.each))
     assert [each.effects for each in one.rated] == [("velocity_lag",), ("displacement_gain",)]
+
+
+def test_what_has_the_smallest_misfit_is_rated_at_its_accuracy(monkeypatch):
+    """One friction in records of many: far from its accuracy as fitted, behind many that explain nothing."""
+
+    def rated(accuracy, penalised):
+        return ladder.Rated(SimpleNamespace(penalised=penalised, effects=()), accuracy, None)
+
+    others = [rated(0.69, 9e5 + i) for i in range(12)]
+    rough = sorted([*others, right := rated(1.2, 2e5)], key=ladder.by_accuracy)
+    improved = {id(right): replace(right, accuracy=0.5)}
+    monkeypatch.setattr(ladder, "_refined", lambda each: improved.get(id(each), each))
+    monkeypatch.setattr(ladder, "held_out_accuracy", lambda fit, predict: 0.5)
+    level = ladder.level_of(SimpleNamespace(each=map), rough, None)
+    assert (level.best.explanation, level.best.accuracy) == (right.explanation, 0.5)
+    assert len(level.rated) == 13

@@ -355,6 +355,24 @@ def test_columns_are_found_in_any_layout(tmp_path, plain, form):
     assert np.abs(found.velocity - plain.velocity).max() < 1e-12
 
 
+def test_headers_between_blocks_are_left_out(tmp_path):
+    """A test stand begins each block with the names of its columns, and a line that tells when."""
+    rows = lines()
+    block = len(rows) // 3
+    blocks = [rows[1 + i * block : 1 + (i + 1) * block] for i in range(3)]
+    text = [
+        each for i, own in enumerate(blocks) for each in (f"Cycle {i} at 12:0{i} pm", rows[0], "s,mm,-", *own)
+    ]
+    path = fixture_measured.write(tmp_path, MEASURED, csv=text)
+    found, plain = measured.read(path).tests[0], rows[1 : 1 + 3 * block]
+    assert "6 lines of further headers left out" in found.remarks[0]
+    assert found.time.size == len(plain)
+    np.testing.assert_allclose(found.time, [float(row.split(",")[0]) for row in plain], atol=1e-12)
+    text[block + 7] = "0.1,oops,0.2"
+    with pytest.raises(measured.MeasuredError, match=rf"one.csv:{block + 8}: d: \"oops\" is not"):
+        measured.read(fixture_measured.write(tmp_path, MEASURED, csv=text))
+
+
 def test_a_unit_that_is_unknown_is_told(tmp_path):
     found = measured.read(fixture_measured.write(tmp_path, csv=["t [s],d (V),v", *lines()[1:]])).tests[0]
     assert found.remarks == ('displacement: unit "V" of the file is unknown, and not compared with mm',)

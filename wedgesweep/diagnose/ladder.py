@@ -101,13 +101,17 @@ def rated_where_it_ended(each: Explanation) -> Rated:
 def level_of(search: Search, rough: Sequence[Rated], predict: Predictor) -> Level:
     """The explanations of one size, best first.
 
-    The leading ones are refined; so is any other that would rank among the COMPARED best without it.
+    The leading ones are refined, by accuracy and by misfit: with the weights of noise alone a right cause
+    whose size differs from record to record ends far from its accuracy. So is any other that would rank among
+    the COMPARED best without it.
     """
     waiting, done = list(rough), list[Rated]()
     chosen = [each for each in waiting[:REFINED] if each.accuracy <= FACTOR * waiting[0].accuracy]
+    by_misfit = sorted(waiting, key=lambda each: each.explanation.penalised)[:COMPARED]
+    chosen += [each for each in by_misfit if each not in chosen]
     while chosen:
         done = sorted([*done, *search.each(_refined, chosen)], key=by_accuracy)
-        waiting = waiting[len(chosen) :]
+        waiting = [each for each in waiting if each not in chosen]
         chosen = _still_to_refine(waiting, done)
     order = sorted([*done, *waiting], key=by_accuracy)
     return Level((_with_held_out_accuracy(order[0], predict), *order[1:]))

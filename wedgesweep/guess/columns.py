@@ -67,7 +67,8 @@ DAYS, EPOCH = (2e4, 8e4), (1e9, 4e9)
 RUN = re.compile(r"(?:run|trial|versuch|messung|repeat|rep|cycle)\W*(\d+)", re.IGNORECASE)
 # Units and names of angles and torques.
 ANGULAR = re.compile(
-    r"rad|deg|rpm|N m|ang[lu]|winkel|theta|phi|\bq|rotat|joint|torsion|pendul|torque|omega|\btau|encod|motor"
+    r"rad|deg|rpm|N m|ang[lu]|winkel|theta|phi|\bq|rotat|joint|torsion|pendul|torque|omega|\btau"
+    r"|encod|motor|gyro"
 )
 BRACKETS, WORDS = re.compile(r"[\[(]([^\[\]()]*)[\])]"), re.compile(r"[a-zA-ZäöüÄÖÜß/']+|\d+")
 

@@ -96,7 +96,7 @@ def from_release(signal: np.ndarray, time: np.ndarray) -> Part:
     swing = np.abs(signal - rest)
     largest = int(swing.argmax())
     pushed = largest > 2 and swing[0] < PUSH * swing[largest] and largest < BEGINNING * signal.size
-    return Part(start=float(f"{time[largest]:.6g}")) if pushed else WHOLE
+    return Part(start=_down(float(time[largest]), float(time[1] - time[0]))) if pushed else WHOLE
 
 
 def from_steady(signal: np.ndarray, time: np.ndarray) -> Part:

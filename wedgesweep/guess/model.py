@@ -141,44 +141,53 @@ def _under_force(tests: Sequence[TestRecord], restoring: Restoring) -> tuple[flo
     """Share of the force that is left, and numbers by its parts: one is velocity's sign times a stated load.
 
     Joints are elastic before they slip: after a reversal friction builds up over some of the stroke, which
-    looks like damping. What comes later in a stroke counts alone if a linear law explains it clearly better;
-    of two such parts that with less damping, as effects can add a damper but take none away.
+    looks like damping. What comes later in a stroke counts alone if a linear law explains it clearly better,
+    or friction differs from test to test if that does; of several such laws that with least damping counts,
+    as effects can add a damper but take none away.
     """
     loads = [test.model.get(NORMAL_FORCE, 0.0) for test in tests]
     loaded = min(loads) > 0.0
     factors = loads if loaded else [1.0] * len(tests)
     moving = [_moving(test, factor, restoring) for test, factor in zip(tests, factors, strict=True)]
     all_of_it = _explained(moving)
-    later = [_explained([each.after(share) for each in moving]) for share in BUILT_UP]
-    clearer = [each for each in later if each[0] < CLEARLY * all_of_it[0]]
+    others = [_explained([each.after(share) for each in moving]) for share in BUILT_UP]
+    others += [] if loaded else [_explained(moving, apart=True)]
+    clearer = [each for each in others if each[0] < CLEARLY * all_of_it[0]]
     left, found = min(clearer, key=lambda each: each[1].damping, default=all_of_it)
     return left, replace(found, load=loads[0] if loaded else 0.0)
 
 
-def _explained(tests: Sequence[_Moving]) -> tuple[float, Numbers]:
-    """Share of the force that a linear law leaves, and the numbers of that law."""
+def _explained(tests: Sequence[_Moving], apart: bool = False) -> tuple[float, Numbers]:
+    """Share of the force that a linear law leaves, and the numbers of that law.
+
+    ``apart``: with a friction of its own in each test, of which the law has the mean.
+    """
     design = np.vstack([each.parts - each.parts.mean(axis=0) for each in tests])
+    if apart:
+        test = np.repeat(np.arange(len(tests)), [each.force.size for each in tests])
+        design = np.column_stack([design[:, :3], design[:, 3:] * (test[:, None] == np.arange(len(tests)))])
     force = np.concatenate([each.force - each.force.mean() for each in tests])
     size, scatter = np.maximum(design.std(axis=0), 1e-300), float(force.std())
     found = _not_negative(design / size, force) / size
     left = float(np.std(force - design @ found)) / max(scatter, 1e-300)
     found[found * size < LEAST * scatter] = 0.0
-    mass, damping, spring, friction = found.tolist()
-    unseen = ("mass",) if mass == 0.0 else ()
+    mass, damping, spring = found[:3].tolist()
+    unseen, friction = ("mass",) if mass == 0.0 else (), float(found[3:].mean())
     return left, Numbers(mass or UNSEEN * scatter / float(size[0]), spring, damping, friction, unseen)
 
 
 def _not_negative(design: np.ndarray, force: np.ndarray) -> np.ndarray:
-    """Factors >= 0 of acceleration, velocity, place and direction, (4,), that explain a force best.
+    """Factors >= 0 (k,) of acceleration, velocity, place and directions (n, k) that explain a force best.
 
     At one frequency acceleration is opposite to place: then only the larger of inertia and spring shows.
     """
     acceleration, place = design[:, 0], design[:, 2]
     alike = abs(acceleration @ place) > ALIKE * force.size
-    fits = []
-    for used in ([1, 2, 3], [0, 1, 3]) if alike else ([0, 1, 2, 3],):
+    fits, directions = [], range(3, design.shape[1])
+    for motions in ([1, 2], [0, 1]) if alike else ([0, 1, 2],):
+        used = [*motions, *directions]
         factors, left = nnls(design[:, used], force)
-        fits.append((left, np.bincount(used, factors, 4)))
+        fits.append((left, np.bincount(used, factors, design.shape[1])))
     return min(fits, key=lambda fit: fit[0])[1]
 
 

@@ -31,7 +31,12 @@ def read(path: Path, names: Sequence[Name], stated: Mapping[str, Any] | None = N
         raise ReadError([f"{path}: {error}"]) from error
     if dialect is None:
         raise ReadError([f"{path}:{fault}" for fault in _header_faults(lines, names, stated)])
-    filled = [line for line in range(dialect.first, len(lines)) if not csv_dialect.is_skipped(lines[line])]
+    repeated = _further_headers(lines, dialect)
+    filled = [
+        line
+        for line in range(dialect.first, len(lines))
+        if line not in repeated and not csv_dialect.is_skipped(lines[line])
+    ]
     if not filled:
         raise ReadError([f"{path}: no data below the header; write one line per sample"])
     columns, wide = _columns([lines[line] for line in filled], dialect)
@@ -45,7 +50,31 @@ def read(path: Path, names: Sequence[Name], stated: Mapping[str, Any] | None = N
         name: _channel(cells, dialect.names[place], unit, (dialect.decimal, thousands), missing)
         for name, cells, place, unit in zip(names, columns, dialect.places, dialect.units, strict=True)
     }
-    return Table(channels, lambda sample: f"{path}:{filled[sample] + 1}", dialect.described())
+    form = [dialect.described(), f"{len(repeated)} lines of further headers left out" if repeated else ""]
+    return Table(channels, lambda sample: f"{path}:{filled[sample] + 1}", ", ".join(filter(None, form)))
+
+
+def _further_headers(lines: Sequence[str], dialect: Dialect) -> set[int]:
+    """Lines of headers between the data, where each block of a recorder has its own.
+
+    Each is the line of names again, with as many lines below it as at first, and what is no data above it.
+    """
+    if dialect.header is None:
+        return set()
+    names, below, found = lines[dialect.header], dialect.first - dialect.header, set[int]()
+    for place in range(dialect.first, len(lines)):
+        if lines[place] == names:
+            found |= {*range(place, place + below)}
+            above = place - 1
+            while above >= dialect.first and not _is_sample(lines[above], dialect):
+                found.add(above)
+                above -= 1
+    return found
+
+
+def _is_sample(line: str, dialect: Dialect) -> bool:
+    cells = csv_dialect.split(line, dialect.delimiter)
+    return all(csv_dialect.is_number(cells[place]) for place in dialect.places if place < len(cells))
 
 
 def _header_faults(lines: Sequence[str], names: Sequence[Name], stated: Mapping[str, Any]) -> list[str]:
