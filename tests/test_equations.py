@@ -57,6 +57,7 @@ def test_symbols_with_a_dimension_have_a_unit():
         "restitution",
         "locked_in",
         "share",
+        "s",
         "s_b",
     }
     for each in all_stated():
