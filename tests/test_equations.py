@@ -59,6 +59,9 @@ def test_symbols_with_a_dimension_have_a_unit():
         "share",
         "s",
         "s_b",
+        "spread",
+        "i",
+        *(f"b_{place}" for place in "i12345"),
     }
     for each in all_stated():
         unitless = {name for name, meaning in each.meanings.items() if not meaning.unit}
