@@ -65,6 +65,7 @@ def test_draws_and_says_what_it_shows(kind, dataset):
     assert [text for text in labels(figure) if "[" not in text] == []  # [1] without a dimension
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize("kind", KINDS)
 def test_units_of_choice_are_in_all_figures_and_move_nothing(kind, dataset):
     shown, usual = figures.draw(dataset, kind, units="us"), figures.draw(dataset, kind)

@@ -490,6 +490,9 @@ def test_two_effects_that_are_far_more_accurate_than_all_others_are_the_cause(
     assert found.verdict == expected
     assert (found.cause is best.explanation) == (expected != "none-of-mine")
     assert found.rivals == ((second.explanation,) if expected == "tied" else ())
+    # One that holds them as a special case is no other explanation, but must lead clearly as well.
+    springs = Level((rated(0.9 * pair, "maxwell_presliding", "presliding", "channel_delay"),))
+    assert verdict.by_accuracy(unexplained, (*levels[:3], springs)).verdict == expected
     two_numbers = Level((rated(pair, "bolster_mass", "bolster_stiffness", held_out=pair),))
     assert verdict.by_accuracy(unexplained, (*levels[:2], two_numbers)).verdict == "none-of-mine"
 

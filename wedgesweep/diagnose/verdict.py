@@ -444,8 +444,8 @@ def _surpassing(levels: "Sequence[Level]", size: int, leading: "Sequence[Rated]"
 
 
 def _holds(larger: "Rated", leading: "Sequence[Rated]") -> bool:
-    """Whether an explanation has all effects of one of the leading ones."""
-    return any(set(each.effects) <= set(larger.effects) for each in leading)
+    """Whether one of the leading explanations is an explanation without some effects, or a special case."""
+    return any(parts(each.effects) <= parts(larger.effects) for each in leading)
 
 
 def _unexplained(base: Explanation, best: Explanation | None) -> Finding:

@@ -143,7 +143,7 @@ def _under_force(tests: Sequence[TestRecord], restoring: Restoring) -> tuple[flo
     Joints are elastic before they slip: after a reversal friction builds up over some of the stroke, which
     looks like damping. What comes later in a stroke counts alone if a linear law explains it clearly better,
     or friction differs from test to test if that does; of several such laws that with least damping counts,
-    as effects can add a damper but take none away.
+    as effects can add a damper but take none away. At one speed friction of each test may be all there is.
     """
     loads = [test.model.get(NORMAL_FORCE, 0.0) for test in tests]
     loaded = min(loads) > 0.0
@@ -151,10 +151,17 @@ def _under_force(tests: Sequence[TestRecord], restoring: Restoring) -> tuple[flo
     moving = [_moving(test, factor, restoring) for test, factor in zip(tests, factors, strict=True)]
     all_of_it = _explained(moving)
     others = [_explained([each.after(share) for each in moving]) for share in BUILT_UP]
-    others += [] if loaded else [_explained(moving, apart=True)]
+    if not loaded:
+        damped, undamped = (_explained(each, apart=True) for each in (moving, [_undamped(m) for m in moving]))
+        others.append(damped if damped[0] < CLEARLY * undamped[0] else undamped)
     clearer = [each for each in others if each[0] < CLEARLY * all_of_it[0]]
     left, found = min(clearer, key=lambda each: each[1].damping, default=all_of_it)
     return left, replace(found, load=loads[0] if loaded else 0.0)
+
+
+def _undamped(test: _Moving) -> _Moving:
+    """A test in which no damper can explain anything."""
+    return test._replace(parts=test.parts * [1.0, 0.0, 1.0, 1.0])
 
 
 def _explained(tests: Sequence[_Moving], apart: bool = False) -> tuple[float, Numbers]:
