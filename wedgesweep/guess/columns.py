@@ -68,7 +68,7 @@ RUN = re.compile(r"(?:run|trial|versuch|messung|repeat|rep|cycle)\W*(\d+)", re.I
 # Units and names of angles and torques.
 ANGULAR = re.compile(
     r"rad|deg|rpm|N m|ang[lu]|winkel|theta|phi|\bq|rotat|joint|torsion|pendul|torque|omega|\btau"
-    r"|encod|motor|gyro"
+    r"|encod|gyro"
 )
 BRACKETS, WORDS = re.compile(r"[\[(]([^\[\]()]*)[\])]"), re.compile(r"[a-zA-ZäöüÄÖÜß/']+|\d+")
 
