@@ -50,7 +50,9 @@ def _untried(result: DiagnosisResult) -> str:
     first = "{what} ({left_out} of {of})".format(**left_out[0])
     if len(left_out) > 1:
         first = f"{sum(each['left_out'] for each in left_out)} more fits, first of all {first}"
-    return f"; the search had spent its budget before it tried {first}{_never_tried(result)}"
+    alone = "; the intervals hold if nothing of that is missing as well"
+    more = alone if result.reason is Reason.MORE_ACCURATE else ""
+    return f"; the search had spent its budget before it tried {first}{_never_tried(result)}{more}"
 
 
 def _never_tried(result: DiagnosisResult) -> str:
