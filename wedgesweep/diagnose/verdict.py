@@ -381,10 +381,10 @@ def by_accuracy(finding: Finding, levels: "Sequence[Level]") -> Finding:
         return finding
     leading = {size: _leading(levels, size) for size in range(1, min(len(levels), MOST_NAMED + 1))}
     larger = {size: _surpassing(levels, size, found) for size, found in leading.items() if found}
-    parts = [size for size in larger if all(_holds(each, leading[size]) for each in larger[size])]
-    if not parts:
+    sizes = [size for size in larger if all(_holds(each, leading[size]) for each in larger[size])]
+    if not sizes:
         return finding
-    size = min(parts, key=lambda size: (bool(larger[size]), size))
+    size = min(sizes, key=lambda size: (bool(larger[size]), size))
     best, *rivals = leading[size]
     least = min((each.accuracy for each in larger[size]), default=0.0)
     close = [each for each in larger[size] if each.accuracy <= CLEAR * least]

@@ -59,14 +59,14 @@ def _further_headers(lines: Sequence[str], dialect: Dialect) -> set[int]:
 
     Each is the line of names again, with as many lines below it as at first, and what is no data above it.
     """
-    if dialect.header is None:
+    if dialect.header is None or _is_sample(lines[dialect.header], dialect):
         return set()
     names, below, found = lines[dialect.header], dialect.first - dialect.header, set[int]()
     for place in range(dialect.first, len(lines)):
         if lines[place] == names:
             found |= {*range(place, place + below)}
             above = place - 1
-            while above >= dialect.first and not _is_sample(lines[above], dialect):
+            while above >= dialect.first and above not in found and not _is_sample(lines[above], dialect):
                 found.add(above)
                 above -= 1
     return found
