@@ -112,9 +112,9 @@ def _missing_in_cases(document: Mapping[str, Any]) -> Iterator[str]:
 
 def _of_varied(document: Mapping[str, Any]) -> Iterator[str]:
     """Contradictions between numbers that the sweep varies, or of one of them with the rest."""
+    turned = rotation.turns(document)
     for numbers in corners(_varied(document)):
         for problem in contradictions(with_numbers(document, numbers)):
-            turned = rotation.turns(document)
             own, told = (rotation.written(numbers), rotation.text) if turned else (numbers, str)
             where = ", ".join(f"{key} = {formatting.setting(value)}" for key, value in own.items())
             yield f"sweep, at {where}: {told(problem)}"

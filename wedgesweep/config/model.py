@@ -224,7 +224,12 @@ class Config:
     @cached_property
     def input(self) -> Input:
         """The input at scale 1; raises ConfigError if a recording cannot be read."""
-        return input_of(self.document["input"], self.sweep.omega_n)
+        return input_of(self.document[INPUT], self.sweep.omega_n)
+
+    def inputs(self, tables: Iterable[Mapping[str, Any]]) -> list[Input]:
+        """The input at scale 1 of each table [input]; a recording is read once."""
+        own = self.document[INPUT]
+        return [self.input if table == own else input_of(table, self.sweep.omega_n) for table in tables]
 
     def tables_of_input(self, indices: np.ndarray) -> list[dict[str, Any]]:
         """The table [input] of some cases, shape (n,)."""
@@ -261,7 +266,7 @@ class Config:
         absolute = self.system == OSCILLATOR and self.oscillator["contact"] != "base"
         belt = self.oscillator.get("belt_velocity", 0.0) if absolute else 0.0
         natural, rate = self.sweep.omega_n, table.get("sampling_hz")
-        given = input_of(table, natural)
+        (given,) = self.inputs([table])
         return transient_of(given, natural, rate, absolute, self.system == OSCILLATOR, belt)
 
     def case_list(self) -> list[Case]:

@@ -412,12 +412,12 @@ def _leading(levels: "Sequence[Level]", size: int) -> "Sequence[Rated]":
     first, *rest = levels[size].rated
     second = [each for each in rest[:1] if set(each.effects) & set(first.effects)]
     for found in ([first], [first, *second]):
-        if _lead(levels, size, found):
+        if _clearly_ahead(levels, size, found):
             return found
     return ()
 
 
-def _lead(levels: "Sequence[Level]", size: int, leading: "Sequence[Rated]") -> bool:
+def _clearly_ahead(levels: "Sequence[Level]", size: int, leading: "Sequence[Rated]") -> bool:
     """Whether explanations are by far more accurate than all others with as many effects, or fewer."""
     (best, *_), base, worst = leading, levels[0].best, max(each.accuracy for each in leading)
     # One that reaches the noise over all tests was refused for what it leaves in some of them.

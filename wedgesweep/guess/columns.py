@@ -166,7 +166,7 @@ def _is_abscissa(column: Column) -> bool:
 
 def choose(columns: Sequence[Column]) -> Run:
     """The channels among the columns of a run."""
-    time = next(filter(is_time, columns), next(filter(_is_abscissa, columns), None))
+    time = next(filter(is_time, columns), None) or next(filter(_is_abscissa, columns), None)
     rest = [column for column in columns if column is not time and not is_time(column) and _varies(column)]
     load = next(filter(_presses, columns), None)
     channels = _by_name([column for column in rest if column is not load])

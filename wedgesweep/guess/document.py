@@ -7,8 +7,9 @@ from typing import Any
 
 from wedgesweep import rotation, toml
 from wedgesweep.guess.columns import INPUT, Chosen, mean_load
-from wedgesweep.guess.model import NORMAL_FORCE, Numbers
+from wedgesweep.guess.model import Numbers
 from wedgesweep.guess.tests import UNKNOWN_RATE, Guessed
+from wedgesweep.measured import contact_load
 from wedgesweep.measured.declarations import ABSOLUTE, LOOP, RELATIVE, STEADY
 from wedgesweep.readers.survey import Survey
 
@@ -137,7 +138,7 @@ def _test(test: Guessed, first: Guessed, path: Path) -> Iterator[str]:
         yield f"to_s = {test.part.end!r}"
     if test.run.load is not None:
         load = float(f"{mean_load(test.run.load):.4g}")
-        yield f"model = {toml.inline({NORMAL_FORCE: load})}  # mean load of the record"
+        yield f"model = {toml.inline({contact_load.KEY: load})}  # mean load of the record"
     if test.kind == STEADY and INPUT not in test.run.channels:
         yield f"{ASK}how large is the motion of the base (amplitude_mm or _rad) or the force (amplitude_N)?"
         yield "# amplitude_mm = 1.0"

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.optimize import nnls
 
 from wedgesweep.diagnose.smoothing import LOWEST, LowPass, derivative, white_noise
-from wedgesweep.measured import Measurement, TestRecord
+from wedgesweep.measured import Measurement, TestRecord, contact_load
 from wedgesweep.measured.declarations import MOTIONS, RELATIVE
 from wedgesweep.measured.kinds import HIGHEST
 
@@ -33,8 +33,6 @@ TAIL, PADDED = 0.1, 8
 CLEARLY = 0.5
 # Tests that are looked at.
 TESTS = 6
-# The number of a test's model that its load is.
-NORMAL_FORCE = "oscillator.normal_force_N"
 
 # A restoring force over its factor, of places (n,).
 Restoring = Callable[[np.ndarray], np.ndarray]
@@ -96,10 +94,8 @@ def _free(tests: Sequence[TestRecord], restoring: Restoring) -> tuple[float, Num
 
 def _fitted(design: np.ndarray, force: np.ndarray) -> tuple[float, list[float]]:
     """Share of a force (n,) that the parts (n, k) of it leave, and their factors, which are >= 0."""
-    size, whole = (
-        np.maximum(np.linalg.norm(design, axis=0), 1e-300),
-        max(float(np.linalg.norm(force)), 1e-300),
-    )
+    size = np.maximum(np.linalg.norm(design, axis=0), 1e-300)
+    whole = max(float(np.linalg.norm(force)), 1e-300)
     parts, left = nnls(design / size, force)
     return float(left / whole), np.where(parts < LEAST * whole, 0.0, parts / size).tolist()
 
@@ -145,7 +141,7 @@ def _under_force(tests: Sequence[TestRecord], restoring: Restoring) -> tuple[flo
     or friction differs from test to test if that does; of several such laws that with least damping counts,
     as effects can add a damper but take none away. At one speed friction of each test may be all there is.
     """
-    loads = [test.model.get(NORMAL_FORCE, 0.0) for test in tests]
+    loads = [test.model.get(contact_load.KEY, 0.0) for test in tests]
     loaded = min(loads) > 0.0
     factors = loads if loaded else [1.0] * len(tests)
     moving = [_moving(test, factor, restoring) for test, factor in zip(tests, factors, strict=True)]

@@ -50,9 +50,10 @@ def _untried(result: DiagnosisResult) -> str:
     first = "{what} ({left_out} of {of})".format(**left_out[0])
     if len(left_out) > 1:
         first = f"{sum(each['left_out'] for each in left_out)} more fits, first of all {first}"
-    alone = "; the intervals hold if nothing of that is missing as well"
-    more = alone if result.reason is Reason.MORE_ACCURATE else ""
-    return f"; the search had spent its budget before it tried {first}{_never_tried(result)}{more}"
+    said = f"; the search had spent its budget before it tried {first}{_never_tried(result)}"
+    if result.reason is Reason.MORE_ACCURATE:
+        said += "; the intervals hold if nothing of that is missing as well"
+    return said
 
 
 def _never_tried(result: DiagnosisResult) -> str:
@@ -110,7 +111,7 @@ def _most_accurate(result: DiagnosisResult) -> str:
     )
     noise = "" if why.get("larger") else ", though no explanation reaches the noise"
     if why.get("parameter"):
-        noise = f", though within the noise {why['parameter']} differs from test to test"
+        noise = f", though {why['parameter']} differs a little from test to test"
     return f"{found}{noise}: {_improvement(result)}{_larger(result)}."
 
 

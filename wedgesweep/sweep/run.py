@@ -317,7 +317,8 @@ class Sweep:
         sweep = self.config.sweep
         dims, cases = sweep.along(sweep.keys_of_input)
         tables = self.config.tables_of_input(cases.ravel())
-        return transients.coordinates(tables, (*dims, "time"), cases.shape, transient)
+        inputs = self.config.inputs(tables)
+        return transients.coordinates(tables, inputs, (*dims, "time"), cases.shape, transient)
 
 
 def _header(ds: "xr.Dataset") -> dict[str, str]:

@@ -8,7 +8,8 @@ import numpy as np
 
 from wedgesweep import response, simulate
 from wedgesweep.effects import stray_vibration
-from wedgesweep.inputs import kinds, sine_sweep
+from wedgesweep.inputs import sine_sweep
+from wedgesweep.inputs.sampled import Input
 from wedgesweep.simulate import Settings, Transient
 from wedgesweep.solvers.trajectory import CaseError, Trajectory
 from wedgesweep.systems import driven_mass, is_oscillator, moving_mass, opens
@@ -107,14 +108,18 @@ def _of_lift_off(sums: np.void) -> dict[str, float]:
 
 
 def coordinates(
-    tables: Sequence[Mapping[str, Any]], dims: tuple[str, ...], shape: tuple[int, ...], transient: Transient
+    tables: Sequence[Mapping[str, Any]],
+    inputs: Sequence[Input],
+    dims: tuple[str, ...],
+    shape: tuple[int, ...],
+    transient: Transient,
 ) -> dict[str, Any]:
     """Times of the stored samples, the input there at scale 1, and the frequency of a sine sweep.
 
-    ``tables`` [input] are those of an array of cases of a ``shape``; ``dims``: its dimensions, and time.
+    ``tables`` [input], and their ``inputs``, are those of an array of cases of a ``shape``; ``dims``: its
+    dimensions, and time.
     """
     t = np.arange(transient.samples) * (transient.span / transient.samples)
-    inputs = [kinds.made(table, transient.omega) for table in tables]
     values = np.reshape([given.at(t, given.sampled()) for given in inputs], (*shape, t.size))
     about = {"units": inputs[0].units, "long_name": f"input at scale 1 ({inputs[0].quantity})"}
     found = {
