@@ -6,7 +6,7 @@ import pytest
 from tests.diagnose.synthetic import LAG, base_of, drawn, searched
 from wedgesweep.diagnose import accuracy, cross_validation
 from wedgesweep.diagnose.cross_validation import Gain, Predictor
-from wedgesweep.diagnose.steady import harmonic_data
+from wedgesweep.diagnose.steady import harmonic_data, tone
 
 POINTS = 32
 
@@ -127,5 +127,5 @@ def test_a_fine_sweep_is_no_single_group():
     frequencies = np.arange(30.0, 38.1, 0.5)
     found = harmonic_data.groups_of_equal(frequencies[::-1].copy())
     assert sorted(np.concatenate(found).tolist()) == list(range(frequencies.size))
-    assert max(np.ptp(np.log(frequencies[::-1][group])) for group in found) <= harmonic_data.SAME_GROUP
+    assert max(np.ptp(np.log(frequencies[::-1][group])) for group in found) <= tone.SAME
     assert len(found) > 5

@@ -97,6 +97,27 @@ def _of_parts(name: str, combined: Callable[[list], Any]) -> Any:
     return property(lambda self: combined(self._each(name)))
 
 
+def _by_parts(name: str, combined: Callable[[list], Any]) -> Any:
+    """A method of all parts, its result combined from that of each."""
+    return lambda self, *arguments: combined(self._each(name, *arguments))
+
+
+def _renewing(name: str) -> Any:
+    """A method that returns the data with the parts that it returns of each."""
+    return lambda self, *arguments: self._with(self._each(name, *arguments))
+
+
+def _joined(parts: Sequence[np.ndarray]) -> np.ndarray:
+    """Values (..., t, m) of the parts as (..., T, m), with zeros at the end."""
+    shape = sum(each.shape[-2] for each in parts), max(each.shape[-1] for each in parts)
+    found, first = np.zeros((*parts[0].shape[:-2], *shape)), 0
+    for each in parts:
+        last = first + each.shape[-2]
+        found[..., first:last, : each.shape[-1]] = each
+        first = last
+    return found
+
+
 class Concatenation(FitData):
     """Tests of several parts."""
 
@@ -106,8 +127,19 @@ class Concatenation(FitData):
     power = _of_parts("power", np.concatenate)
     model_misfit = _of_parts("model_misfit", np.concatenate)
     input_gain_std = _of_parts("input_gain_std", max)
-    shares_nuisances = _of_parts("shares_nuisances", any)
     recorded_forces = _of_parts("recorded_forces", lambda found: sum(found, ()))
+    power_of = _by_parts("power_of", np.concatenate)
+    response_change = _by_parts("response_change", _joined)
+    extra_nuisances = _by_parts("extra_nuisances", np.concatenate)
+    never_steady = _by_parts("never_steady", np.concatenate)
+    needs_alignment = _by_parts("needs_alignment", any)
+    implausible = _by_parts("implausible", any)
+    with_model_error = _renewing("with_model_error")
+    bootstrap_sample = _renewing("bootstrap_sample")
+    with_undetected = _renewing("with_undetected")
+    aligned_to = _renewing("aligned_to")
+    renewed = _renewing("renewed")
+    held_as_stated = _renewing("held_as_stated")
 
     def __init__(self, parts: Sequence[FitData], layout: Layout | None = None) -> None:
         self._parts, self.layout = tuple(parts), layout or Layout.of(parts)
@@ -119,19 +151,30 @@ class Concatenation(FitData):
     def parts(self) -> tuple[FitData, ...]:
         return self._parts
 
-    def _each(self, method: str, *arguments: Any, each: Sequence[Any] | None = None) -> list[Any]:
-        """Results of a method, or values of a property, of the parts; ``each``: an argument for each."""
-        found = [getattr(part, method) for part in self.parts]
-        if each is not None:
-            return [one(own, *arguments) for one, own in zip(found, each, strict=True)]
-        return [one(*arguments) if callable(one) else one for one in found]
+    def _each(self, name: str, *arguments: Any) -> list[Any]:
+        """Results of a method, or values of a property, of the parts."""
+        own = zip(*map(self._split, arguments), strict=True) if arguments else [()] * len(self.parts)
+        found = [getattr(part, name) for part in self.parts]
+        return [one(*each) if callable(one) else one for one, each in zip(found, own, strict=True)]
+
+    def _split(self, argument: Any) -> Sequence[Any]:
+        """An argument as the parts see it: those about tests are about their own."""
+        match argument:
+            case Evaluation():
+                return self._evaluations(argument)
+            case Fit():
+                return self.fits(argument)
+            case Point():
+                return self._points(argument)
+            case Scenario():
+                return [own for (own,) in self._scenarios([argument])]
+            case Responses():
+                return argument.parts
+        return [argument] * len(self.parts)
 
     def _with(self, parts: Sequence[FitData]) -> Self:
         same = all(one is other for one, other in zip(parts, self.parts, strict=True))
         return self if same else type(self)(parts, self.layout)
-
-    def power_of(self, response: Responses) -> np.ndarray:
-        return np.concatenate(self._each("power_of", each=response.parts))
 
     @property
     def nuisance_std(self) -> np.ndarray:
@@ -200,9 +243,6 @@ class Concatenation(FitData):
             for i in range(len(self.parts))
         ]
 
-    def _scenario(self, scenario: Scenario) -> list[Scenario]:
-        return [own for (own,) in self._scenarios([scenario])]
-
     def fits(self, fit: Fit) -> list[Fit]:
         own = zip(self.parts, self._evaluations(fit.evaluation), strict=True)
         return [replace(fit, model=fit.model.on(part), evaluation=each) for part, each in own]
@@ -212,7 +252,8 @@ class Concatenation(FitData):
         return type(self)([self.parts[i].subset(some) for i, some in kept.items()], layout)
 
     def compare(self, scenarios: Sequence[Scenario], tolerance: float) -> list[Comparison]:
-        by_part = self._each("compare", tolerance, each=self._scenarios(scenarios))
+        own = zip(self.parts, self._scenarios(scenarios), strict=True)
+        by_part = [part.compare(each, tolerance) for part, each in own]
         return [self._comparison(own) for own in zip(*by_part, strict=True)]
 
     def _comparison(self, own: Sequence[Comparison]) -> Comparison:
@@ -221,7 +262,7 @@ class Concatenation(FitData):
         return Comparison(response, _joined(residuals), np.concatenate(found), Starts(warm, self.layout))
 
     def compared_again(self, here: Evaluation) -> Evaluation:
-        own = self._each("compared_again", each=self._evaluations(here))
+        own = self._each("compared_again", here)
         response = here.response._replace(parts=tuple(each.response for each in own))
         return replace(here, response=response, residual=_joined([each.residual for each in own]))
 
@@ -233,20 +274,10 @@ class Concatenation(FitData):
         return _joined(changes), np.concatenate(found, axis=1)
 
     def eliminated_derivatives(self, here: Evaluation) -> np.ndarray:
-        own = self._each("eliminated_derivatives", each=self._evaluations(here))
+        own = self._each("eliminated_derivatives", here)
         size = self.eliminated
         padded = [np.pad(each, ((0, 0), (0, 0), (0, size - each.shape[-1]))) for each in own]
         return np.moveaxis(_joined([np.moveaxis(each, -1, 0) for each in padded]), 0, -1)
-
-    def response_change(self, here: Evaluation, there: Evaluation) -> np.ndarray:
-        own = zip(self.parts, self._evaluations(here), self._evaluations(there), strict=True)
-        return _joined([part.response_change(mine, its) for part, mine, its in own])
-
-    def with_model_error(self, size: float) -> Self:
-        return self._with(self._each("with_model_error", size))
-
-    def bootstrap_sample(self, truth: Evaluation, rng: np.random.Generator) -> Self:
-        return self._with(self._each("bootstrap_sample", rng, each=self._evaluations(truth)))
 
     def held_out_groups(self) -> list[tuple[str, np.ndarray]]:
         """The groups of each part in turn: a model must predict tests of every kind."""
@@ -263,12 +294,6 @@ class Concatenation(FitData):
         shown = {name for own in self._each("candidates", effects) for name in own}
         return tuple(name for name in effects if name in shown)
 
-    def with_undetected(self, effect: str) -> Self:
-        return self._with(self._each("with_undetected", effect))
-
-    def extra_nuisances(self, effects: Iterable[str]) -> np.ndarray:
-        return np.concatenate(self._each("extra_nuisances", tuple(effects)))
-
     def other_nuisances(self, model: Model, evaluation: Evaluation) -> np.ndarray | None:
         own = zip(self.parts, self._evaluations(evaluation), strict=True)
         found = [part.other_nuisances(model.on(part), each) for part, each in own]
@@ -276,21 +301,6 @@ class Concatenation(FitData):
             return None
         points = zip(found, self._points(evaluation.point), strict=True)
         return self.layout.joined([point.nuisance if own is None else own for own, point in points], 0.0)
-
-    def gained_by_other_nuisances(self, evaluation: Evaluation) -> float:
-        return float(sum(self._each("gained_by_other_nuisances", each=self._evaluations(evaluation))))
-
-    def aligned_to(self, evaluation: Evaluation) -> Self:
-        return self._with(self._each("aligned_to", each=self._evaluations(evaluation)))
-
-    def renewed(self, scenario: Scenario) -> Self:
-        return self._with(self._each("renewed", each=self._scenario(scenario)))
-
-    def needs_alignment(self, effects: Iterable[str]) -> bool:
-        return any(self._each("needs_alignment", tuple(effects)))
-
-    def never_steady(self, scenario: Scenario) -> np.ndarray:
-        return np.concatenate(self._each("never_steady", each=self._scenario(scenario)))
 
     def search_nuisances(self, model: Model, points: Sequence[Point]) -> list[Evaluation]:
         by_point = [self._points(each) for each in points]
@@ -300,12 +310,6 @@ class Concatenation(FitData):
                 for each, evaluation in zip(by_point, found, strict=True):
                     each[i] = evaluation.point
         return model.evaluate_all([self._whole(each) for each in by_point])
-
-    def held_as_stated(self) -> Self:
-        return self._with(self._each("held_as_stated"))
-
-    def implausible(self, point: Point) -> bool:
-        return any(self._each("implausible", each=self._points(point)))
 
     def predicted_nuisances(self, evaluation: Evaluation, step: np.ndarray) -> np.ndarray:
         step, evaluations = step.copy(), self._evaluations(evaluation)
@@ -317,11 +321,11 @@ class Concatenation(FitData):
         return step
 
     def rows(self, base: Fit, extended: Fit) -> list[dict[str, Any]]:
-        own = zip(self.parts, self.fits(base), self.fits(extended), strict=True)
-        return [{"kind": part.kind, **row} for part, *fits in own for row in part.rows(*fits)]
+        own = zip(self.parts, self._each("rows", base, extended), strict=True)
+        return [{"kind": part.kind, **row} for part, rows in own for row in rows]
 
     def motion(self, fit: Fit) -> Motion | None:
-        found = self._each("motion", each=self.fits(fit))
+        found = self._each("motion", fit)
         return None if None in found else Motion.joined(found)
 
 
@@ -332,17 +336,6 @@ def joined(parts: Sequence[Any]) -> FitData:
     # Only steady tests have the gain of the input among the uncertain numbers; all parts have the same ones.
     uncertain = {name: std for part in parts for name, std in part.uncertain.items()}
     return Concatenation([replace(part, uncertain=uncertain) for part in parts])
-
-
-def _joined(parts: Sequence[np.ndarray]) -> np.ndarray:
-    """Values (..., t, m) of the parts as (..., T, m), with zeros at the end."""
-    shape = sum(each.shape[-2] for each in parts), max(each.shape[-1] for each in parts)
-    found, first = np.zeros((*parts[0].shape[:-2], *shape)), 0
-    for each in parts:
-        last = first + each.shape[-2]
-        found[..., first:last, : each.shape[-1]] = each
-        first = last
-    return found
 
 
 def _changes(

@@ -132,14 +132,6 @@ class FitData(Protocol):
         """Rms of the noise over that of the response."""
 
     @property
-    def shares_nuisances(self) -> bool:
-        """Whether fits of different effects may take nuisance parameters from each other.
-
-        What one of them finds then serves the others: those that are far off can wait.
-        """
-        return False
-
-    @property
     def known(self) -> Mapping[str, tuple[float, float]]:
         return {}
 
@@ -235,10 +227,6 @@ class FitData(Protocol):
         None if there are none to try.
         """
         return None
-
-    def gained_by_other_nuisances(self, evaluation: Evaluation) -> float:
-        """The most that ``other_nuisances`` could take off the squared misfit; inf: nothing is known."""
-        return np.inf
 
     def aligned_to(self, evaluation: Evaluation) -> Self:
         """The data, with what an evaluation tells of the records' start (the phase of the input there)."""

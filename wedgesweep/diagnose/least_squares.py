@@ -22,11 +22,6 @@ DAMPING, LEAST_DAMPING, MOST_DAMPING, FACTOR = 1e-3, 1e-9, 1e8, 8.0
 UNDETERMINED = 1e-12
 # Largest step of one iteration, in scales of the parameters.
 MAX_STEP = 3.0
-# Largest share of the tests whose nuisance parameters a step may leave where they are, and the least share of
-# the predicted gain that the other tests must make then.
-FEW_TESTS, LEAST_GAIN = 0.25, 0.5
-# A parameter hardly shows if its largest step changes chi-squared by less than this.
-UNNOTICED = 1.0
 
 
 class Step(NamedTuple):
@@ -55,8 +50,10 @@ def minimise(model: Model, start: Evaluation, iterations: int = ITERATIONS) -> F
             # A step that a limit cut short may gain nothing where a more damped one still does.
             if predicted < negligible and not step.limited:
                 break
-            better = _better(model, evaluation, step) if predicted >= negligible else None
-            if better is None:
+            tried = model.evaluate(step.point) if predicted >= negligible else evaluation
+            if tried.chi2 < evaluation.chi2:
+                better = tried
+            else:
                 damping *= FACTOR
         if better is None:
             converged = predicted < negligible
@@ -65,22 +62,6 @@ def minimise(model: Model, start: Evaluation, iterations: int = ITERATIONS) -> F
         damping = max(damping / (FACTOR if gained > 0.5 * predicted else 1.0), LEAST_DAMPING)
         evaluation = better
     return Fit(model, evaluation, _covariance(matrix), converged)
-
-
-def _better(model: Model, evaluation: Evaluation, step: Step) -> Evaluation | None:
-    """The evaluation after a step, or after that of most tests, if it fits better; else None.
-
-    Nuisance parameters that a test hardly shows take long steps, on which its response may jump. If a few
-    tests fit worse, and the others gain half of what was predicted, those of the few stay where they are.
-    """
-    tried = model.evaluate(step.point)
-    change = tried.chi2_by_test - evaluation.chi2_by_test
-    jumped = change > 0.0
-    few = 0 < jumped.sum() <= max(FEW_TESTS * jumped.size, 1)
-    if tried.chi2 >= evaluation.chi2 and few and -change[~jumped].sum() > LEAST_GAIN * step.predicted:
-        kept = np.where(jumped[:, None], evaluation.point.nuisance, step.point.nuisance)
-        tried = model.evaluate(replace(step.point, nuisance=kept))
-    return tried if tried.chi2 < evaluation.chi2 else None
 
 
 def lm_step(model: Model, point: Point, equations: NormalEquations, damping: float) -> Step:
@@ -108,11 +89,6 @@ def _parameter_step(model: Model, x: np.ndarray, equations: NormalEquations, dam
     free = ~(((x <= model.low) & (gradient > 0.0)) | ((x >= model.high) & (gradient < 0.0)))
     longest = MAX_STEP * model.scale
     step = _damped_solution(matrix, gradient, damping, free)
-    too_weak = free & (np.diag(matrix) * longest**2 < UNNOTICED) & (np.abs(step) > longest)
-    if too_weak.any():
-        # A parameter that hardly shows must not shorten the step of the others.
-        fixed = np.where(too_weak, np.clip(step, -longest, longest), 0.0)
-        step = fixed + _damped_solution(matrix, gradient + matrix @ fixed, damping, free & ~too_weak)
     step /= max(np.max(np.abs(step) / longest, initial=0.0), 1.0)
     return step
 

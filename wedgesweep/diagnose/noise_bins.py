@@ -3,9 +3,8 @@
 Those of the motion stand out, or fall with frequency as steeply as a motion does and noise does not.
 """
 
-from collections.abc import Sequence
 from dataclasses import replace
-from math import pi, sqrt
+from math import sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -27,12 +26,8 @@ STANDS_OUT, NEIGHBOURS, ROUNDS = 8.0, 2, 4
 LINE = 30.0
 # Standard deviations by which the mean of some bins exceeds the noise if they are skirts of the motion.
 SKIRT = 2.0
-# The noise with which bins are compared that may be skirts: as much as there may be ...
+# The noise with which bins are compared that may be skirts: as much as there may be.
 AMPLE = Choice(2.0)
-# ... and the same without a preference for white noise.
-AMPLE_COLOURED = Choice(2.0, coloured=0.0)
-# Skirts are looked for from this frequency (rad a sample) downwards, in this many bands.
-HIGHEST, STEPS = 0.75 * pi, 16
 # Number of bands by which the lower end of the noise is moved up at most.
 UPWARDS = 4
 # Bands per octave, and ratio of the power of two bands an octave apart beyond which the lower one is motion.
@@ -102,30 +97,6 @@ def quiet_bins(samples: np.ndarray) -> NoiseBins | None:
     if quiet.size < QUIET_SAMPLES or quiet.std() > QUIET_SHARE * samples.std():
         return None
     return noise_bins(quiet).bins
-
-
-def without_skirts(own: Sequence[OwnNoise], others: Sequence[Sequence[NoiseBins]]) -> list[OwnNoise]:
-    """The same without bins in which the motion has skirts; noise has one shape in all tests.
-
-    Kinks of a motion, where dry friction changes its sign, have skirts that fall with frequency not much
-    faster than noise. Bins are kept from the highest ones downwards, until they exceed the noise that those
-    above them lead one to expect. ``others``: bins of the noise of each test from other sources.
-    """
-    edges = HIGHEST * 2.0 ** (-np.arange(STEPS) / BANDS)
-    first = [max(each.first, min(edges[0], each.bins.frequency[-FEWEST:][0])) for each in own]
-    stopped = [False] * len(own)
-    for low, high in zip(edges[1:], edges[:-1], strict=True):
-        known = zip(own, first, others, strict=True)
-        noise = fit_spectra([[each.bins.above(begin), *more] for each, begin, more in known], AMPLE_COLOURED)
-        for t, (each, expected) in enumerate(zip(own, noise, strict=True)):
-            frequency, power, _ = each.bins.above(max(low, each.first)).up_to(high)
-            excess = power / expected(frequency)
-            if stopped[t] or not excess.size:
-                continue
-            stopped[t] = np.minimum(excess, STANDS_OUT).mean() > 1.0 + SKIRT / sqrt(excess.size)
-            first[t] = high if stopped[t] else max(low, each.first)
-    both = zip(own, first, strict=True)
-    return [each._replace(bins=each.bins.above(begin), first=begin) for each, begin in both]
 
 
 def _fitted(frequency: np.ndarray, power: np.ndarray, kept: np.ndarray, choice: Choice) -> NoiseSpectrum:

@@ -19,15 +19,13 @@ from wedgesweep.diagnose.evaluation import Evaluation
 from wedgesweep.diagnose.explanation import Explanation, best_of_each, penalised
 from wedgesweep.diagnose.least_squares import minimise, subset_fit
 from wedgesweep.diagnose.model import ROUGH, Fit, unfitted
-from wedgesweep.diagnose.search import LEADING, Scans, Search, refit_best
+from wedgesweep.diagnose.search import LEADING, Round, Scans, Search
 from wedgesweep.effects import EFFECTS, go_together
 
 # Starting points of the second effect.
 STARTS = 2
-# Iterations of each round on the subset of tests. At most ENTERING pairs enter the last round, and the second
-# one as well if some pair is nearly adequate by then (chi-squared below NEARLY times the degrees of freedom).
-# The LEADING pairs are then fitted to all tests.
-ROUNDS, ENTERING, NEARLY = (1, 2, 5), 40, 2.0
+# Rounds on the subset of tests; the LEADING pairs are then fitted to all tests.
+ROUNDS = (Round(None, 1), Round(40, 2), Round(40, 5))
 # Once a pair is adequate, pairs with this many times its misfit are dropped, but never SEVERAL of the best.
 # A start of a pair is poor if its misfit is this many times that of the first effect by itself.
 BEHIND, SEVERAL = 5.0, 4
@@ -119,35 +117,26 @@ def _fit_combinations(job: PairSearch, combinations: Sequence[Combination], what
     useful = [each for each in combinations if each.shows and go_together(each.effects)]
     begun = search.each_affordable(lambda each: starting_fit(search, each), useful, what)
     further = f"{what}, followed further"
-    fits = _best_of_pairs([fit for fit in begun if np.isfinite(fit.chi2)])
-    fits = _continued(search, fits, ROUNDS[0], further)
-    if any(fit.chi2 < NEARLY * fit.dof for fit in fits):
-        fits = _best_of_pairs(fits)[:ENTERING]
-    fits = _continued(search, fits, ROUNDS[1], further)
-    fits = _continued(search, promising(fits)[:ENTERING], ROUNDS[2], further)
+    fits = [fit for fit in begun if np.isfinite(fit.chi2)]
+    for entering, iterations in ROUNDS:
+        fits = _continued(search, promising(fits)[:entering], iterations, further)
     completed = SEVERAL if search.budget.left <= 0.0 else LEADING
-    found = search.each(lambda fit: _complete(job, fit), promising(fits)[:completed])
-    return [*refit_best(search, found), *found]
+    return search.each(lambda fit: _complete(job, fit), promising(fits)[:completed])
 
 
 def _continued(search: Search, fits: Sequence[Fit], iterations: int, what: str) -> list[Fit]:
-    """Fits continued for some iterations, the best first; as they are once the budget is spent."""
-    order = sorted(fits, key=lambda fit: fit.chi2)
+    """Fits, the best first, continued for some iterations; as they are once the budget is spent."""
 
     def followed(fit: Fit) -> Fit:
         return minimise(fit.model, fit.evaluation, iterations)
 
-    found = search.each_affordable(followed, order, what)
-    return [*found, *order[len(found) :]]
-
-
-def _best_of_pairs(fits: Sequence[Fit]) -> list[Fit]:
-    return best_of_each(fits, lambda fit: fit.chi2)
+    found = search.each_affordable(followed, fits, what)
+    return [*found, *fits[len(found) :]]
 
 
 def promising(fits: Sequence[Fit]) -> list[Fit]:
     """The best fit of each pair, best first, without those far behind an adequate one."""
-    found = _best_of_pairs(fits)
+    found = best_of_each(fits, lambda fit: fit.chi2)
     if not found or found[0].p < verdict.ADEQUATE:
         return found
     near = [fit for fit in found if fit.chi2 < BEHIND * found[0].chi2]

@@ -46,10 +46,7 @@ def _residual(record: np.ndarray, others: np.ndarray) -> np.ndarray:
 def _delay(one: np.ndarray, other: np.ndarray) -> int:
     """Samples by which one record lags behind another, within SHIFT."""
     longest = int(SHIFT * one.size)
-    lags = np.arange(-longest, longest + 1)
-    inner = slice(longest, one.size - longest)
-    overlap = [float(one[inner] @ other[longest - lag : one.size - longest - lag]) for lag in lags]
-    return int(lags[int(np.argmax(overlap))])
+    return longest - int(np.correlate(other, one[longest : one.size - longest], "valid").argmax())
 
 
 def _delayed(record: np.ndarray, lag: int) -> np.ndarray:

@@ -41,8 +41,6 @@ SHORT_SCHEDULE = (Round(1, 3),)
 BASE_SCHEDULE = (Round(None, 4), Round(3, 6))
 # An effect is dropped after the first round if its misfit is this many times the base model's.
 CUT_OFF = 100.0
-# A fit is far off if it leaves FAR times the squared noise in half of the tests.
-FAR = 100.0
 # Number of best single effects, of best pairs and of best explanations that are looked at again.
 LEADING = 8
 # Work (see work.py) that a search may spend for each test, the least number of tests that it counts, and the
@@ -317,39 +315,6 @@ def _with_own_numbers(model: Model, start: Evaluation) -> Evaluation:
     stated, or as fitted without the effect, the start closest to the truth may look worst.
     """
     return minimise(model.holding(0, start.point.x[0]), start, 1).evaluation
-
-
-def far_off(fit: Fit) -> bool:
-    """Whether a fit leaves much more than noise in most tests."""
-    return float(np.median(fit.evaluation.chi2_by_test / fit.model.data.dof)) > FAR
-
-
-def contenders(search: Search, found: Sequence[Explanation]) -> list[Explanation]:
-    """The best explanations; of transients, whose fits take longest, only those that are not far off.
-
-    All of the best ones if they are far off together.
-    """
-    best = sorted(found, key=penalised)[:LEADING]
-    if not (best and search.data.shares_nuisances) or far_off(best[0].fit):
-        return best
-    return [each for each in best if not far_off(each.fit)]
-
-
-def refit_best(search: Search, found: Sequence[Explanation]) -> list[Explanation]:
-    """Impossible ones of the best explanations, refitted with other nuisance parameters.
-
-    These are tried where they might make an explanation the best one.
-    """
-    leading = contenders(search, found)
-
-    def promising(each: Explanation) -> bool:
-        most = each.fit.model.data.gained_by_other_nuisances(each.fit.evaluation)
-        return each.fit.p < POSSIBLE and each.penalised - most < leading[0].penalised
-
-    def refitted(each: Explanation) -> Explanation:
-        return Explanation(search.tried(OTHER_NUISANCES, each.fit, from_other_nuisances))
-
-    return search.each(refitted, filter(promising, leading))
 
 
 def best_of(

@@ -14,13 +14,12 @@ from wedgesweep.diagnose.fit_data import FitData
 from wedgesweep.diagnose.least_squares import BRIEF, minimise
 from wedgesweep.diagnose.pairs import components, fit_pairs
 from wedgesweep.diagnose.search import (
+    LEADING,
     PAIRS_SHARE,
     Explained,
     Search,
     base_fit,
-    contenders,
     refit_base,
-    refit_best,
     single_fits,
 )
 
@@ -48,16 +47,10 @@ def taken(stages: Sequence[Stage], known: Explained) -> Explained:
 
 def _base_model_again(known: Explained) -> Explained:
     """The base model from where an extension ended, and single effects beside it if it fits far better."""
-    found, better = known.explanations, refit_base(known)
-    # An adequate explanation hands its nuisance parameters on to the others, which need no better base then.
-    handed_on = known.search.data.shares_nuisances and not verdict.none_adequate(found)
-    if better.base.fit.chi2 >= NOTABLE * known.base.fit.chi2 or handed_on:
+    better = refit_base(known)
+    if better.base.fit.chi2 >= NOTABLE * known.base.fit.chi2:
         return better
-    return single_fits(better).joined(found)
-
-
-def _best_refitted(known: Explained) -> Explained:
-    return known.joined(refit_best(known.search, known.explanations))
+    return single_fits(better).joined(known.explanations)
 
 
 def _pairs(known: Explained) -> Explained:
@@ -84,11 +77,8 @@ def _with_renewed_covariance(explained: Explained) -> Explained:
         return explained
     search = replace(search, data=data)
     found = sorted((_compared_again(data, each) for each in found), key=penalised)
-    leading = contenders(search, found)
-    others = [each for each in found if not any(each is one for one in leading)]
-    again = [_compared_again(data, base), *leading]
-    base, *leading = search.each(_refitted, again)
-    found = sorted([*leading, *others], key=penalised)
+    base, *leading = search.each(_refitted, [_compared_again(data, base), *found[:LEADING]])
+    found = sorted([*leading, *found[LEADING:]], key=penalised)
     scans = {effect: [data.compared_again(each) for each in scan] for effect, scan in scans.items()}
     return Explained(search, base, found, scans)
 
@@ -121,7 +111,6 @@ REFINEMENT = (
     Stage("covariance renewed", _with_renewed_covariance),
 )
 PAIRS = (
-    Stage("best refitted", _best_refitted, lambda known: verdict.none_adequate([known.base])),
     Stage("beyond range", followed_beyond, _inadequate),
     Stage("best pairs", _pairs, _for_pairs),
     Stage("components", _components, _pair_leads),

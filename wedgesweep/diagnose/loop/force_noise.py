@@ -17,21 +17,15 @@ from wedgesweep.diagnose.smoothing import LowPass, Motion
 from wedgesweep.solvers.imposed_motion import reversals, share_jumps
 
 FROM_MOTION = "what no smooth function of the motion explains"
-# Knots over the displacement and over the velocity of either sign.
-PLACES, SPEEDS = 13, 7
-# Distances since a reversal over which friction may build up, over the range of the motion.
-DISTANCES = (0.003, 0.01, 0.03, 0.1, 0.3)
-# Share of a column's size that earlier ones must leave of it.
+# Knots over the displacement and over the velocity, and distances since a reversal over which friction may
+# build up, over the range of the motion.
+PLACES, SPEEDS, DISTANCES = 13, 7, (0.003, 0.01, 0.03, 0.1, 0.3)
+# Singular value of the functions, over the largest one, below which some of them depend on the others.
 DEPENDENT = 1e-6
 # Samples for each function, below which some of them are left out.
 SAMPLES_PER_FUNCTION = 4
 # Variance by noise of the motion, over its median, beyond which a force is too near a reversal.
 NEAR = 4.0
-# Compared samples to either side of a reversal that are left out here as well, as friction may build up there
-# as no function does, and the share of samples that must be left then.
-FARTHER, ENOUGH_LEFT = 4, 0.5
-# Part of the record at least that must be free of reversals.
-LEAST_CLEAR = 0.2
 
 
 class KnownNoise(NamedTuple):
@@ -45,13 +39,11 @@ class KnownNoise(NamedTuple):
     white: float
     counted: np.ndarray
 
-    def clear(self, velocity: np.ndarray) -> np.ndarray:
-        """Samples (k,) that are far enough from reversals of a velocity (k,), unless few are left then."""
+    @property
+    def clear(self) -> np.ndarray:
+        """Samples (k,) that are far enough from reversals."""
         variance = self.passed_on[0] + self.white**2
-        quiet = self.counted & (variance <= NEAR * np.median(variance[self.counted]))
-        turns = np.diff(np.sign(velocity), append=0.0) != 0.0
-        far = quiet & (np.convolve(turns, np.ones(2 * FARTHER + 1), mode="same") < 0.5)
-        return far if far.sum() >= ENOUGH_LEFT * quiet.sum() else quiet
+        return self.counted & (variance <= NEAR * np.median(variance[self.counted]))
 
 
 def of_force(
@@ -66,57 +58,38 @@ def of_force(
 
     ``model`` (n,): the force of a model along the motion.
     """
-    clear = known.clear(motion.velocity[places])
+    clear = known.clear
     columns = low_pass(_functions(motion, model))[:, places].T
     whole = np.zeros(force.size)
     whole[clear] = _left(columns[clear], force[clear])
     # Samples that are left out carry their share of the power.
-    share = max(float(clear.mean()), LEAST_CLEAR)
-    counted = float(clear.mean()) / share
+    share = float(clear.mean())
 
     def power(frequency: np.ndarray) -> np.ndarray:
-        passed_on = motion_noise.power(known.passed_on, clear, frequency)
-        return counted * (passed_on + known.white**2)
+        return motion_noise.power(known.passed_on, clear, frequency) + known.white**2
 
     found = of_noise([whole / np.sqrt(share)], FROM_MOTION, power)
     return replace(found, white=found.white + known.white**2)
 
 
 def _left(columns: np.ndarray, force: np.ndarray) -> np.ndarray:
-    """What the first columns (n, k) leave of a force (n,), as many of them as cross-validation asks for.
-
-    Generalised cross-validation (Golub, Heath and Wahba, 1979) weighs what a column explains against what it
-    would explain of noise.
-    """
-    basis = _orthonormal(columns)[:, : max(force.size // SAMPLES_PER_FUNCTION, 1)]
-    along = basis.T @ force
-    sizes = np.arange(along.size + 1)
-    rest = force @ force - np.r_[0.0, np.cumsum(along**2)]
-    best = int(np.argmin(rest / (force.size - sizes) ** 2))
-    left = force - basis[:, :best] @ along[:best]
-    return left * np.sqrt(force.size / (force.size - best))
-
-
-def _orthonormal(columns: np.ndarray) -> np.ndarray:
-    """Orthonormal columns (n, k) with the span of the first k columns each; dependent ones are left out."""
-    size = np.linalg.norm(columns, axis=0)
-    q, r = np.linalg.qr(columns / np.where(size > 0.0, size, 1.0))
-    return q[:, np.abs(np.diag(r)) > DEPENDENT]
+    """What columns (n, k) leave of a force (n,): the first ones, as many as the samples can tell apart."""
+    columns = columns[:, : max(force.size // SAMPLES_PER_FUNCTION, 1)]
+    columns = columns / np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
+    factors, _, rank, _ = np.linalg.lstsq(columns, force, rcond=DEPENDENT)
+    return (force - columns @ factors) * np.sqrt(force.size / (force.size - rank))
 
 
 def _functions(motion: Motion, model: np.ndarray) -> np.ndarray:
     """Functions of the motion, (k, n), the most important ones first; jumps count for their share."""
     x, a = _scaled(motion.displacement), _scaled(motion.acceleration)
     v = motion.velocity / np.abs(motion.velocity).max()
-    sign = np.sign(v)
-    simple = [np.ones(x.size), model, sign, v, x, sign * x, a, np.linspace(-1.0, 1.0, x.size), np.abs(v)]
-    since = _since_reversal(motion)
+    sign, since = np.sign(v), _since_reversal(motion)
+    simple = [np.ones(x.size), model, sign, v, x, sign * x, a, np.linspace(-1.0, 1.0, x.size)]
     history = [sign * np.exp(-since / distance) for distance in DISTANCES]
-    both = _hats(x, PLACES)
-    speeds = _hats(np.abs(v), SPEEDS)
-    rows = [*simple, *history, *both, *(each * (v > 0.0) for each in speeds)]
-    rows += [*(each * (v < 0.0) for each in speeds), *(each * sign for each in both), np.abs(a)]
-    found, turns = np.array(rows), reversals(motion.velocity)
+    both = [*_hats(x, PLACES), *_hats(np.abs(v), SPEEDS)]
+    found = np.array([*simple, *history, *both, *(each * sign for each in both)])
+    turns = reversals(motion.velocity)
     for row in found:
         share_jumps(row, turns)
     return found

@@ -20,7 +20,7 @@ from wedgesweep.diagnose.noise_spectrum import NoiseSpectrum
 from wedgesweep.diagnose.steady import amplitude_grid, arrays, simulation, stated_input, tone, waveforms
 from wedgesweep.diagnose.steady.column_load import CHANNEL
 from wedgesweep.diagnose.steady.spectra import SIMULATED, Spectrum
-from wedgesweep.diagnose.steady.tone import TONE, TONE_FREQUENCY
+from wedgesweep.diagnose.steady.tone import SAME, TONE, TONE_FREQUENCY
 from wedgesweep.diagnose.steady.whitened import WhitenedHarmonics, real
 from wedgesweep.effects import acting
 from wedgesweep.effects.states import TIME, kinds
@@ -42,8 +42,6 @@ IMPLAUSIBLE = 0.3
 HELD = 1e-4
 # A covariance is replaced if the variance of some combination of residuals changes by more than this factor.
 CHANGED = 1.1
-# Frequencies or amplitudes closer than this (relative) are left out together in cross-validation.
-SAME_GROUP = 0.02
 
 
 class SteadyResponse(NamedTuple):
@@ -411,12 +409,12 @@ def stated(data: HarmonicData) -> Scenario:
 
 
 def groups_of_equal(values: np.ndarray) -> list[np.ndarray]:
-    """Indices of values that are the same to within SAME_GROUP, group by group."""
+    """Indices of values that are the same to within SAME, group by group."""
     order = np.argsort(values)
     found = [[order[0]]]
     for place in order[1:]:
         # Compared with the first of the group: in a fine sweep each is close to its neighbour.
-        if np.log(values[place] / values[found[-1][0]]) > SAME_GROUP:
+        if np.log(values[place] / values[found[-1][0]]) > SAME:
             found.append([])
         found[-1].append(place)
     return [np.array(group) for group in found]

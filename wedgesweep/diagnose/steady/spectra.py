@@ -32,8 +32,8 @@ PARTS = 8
 LEAST_REMAINING = 0.2
 # Two channels whose noise is more coherent than this are the same signal.
 SAME_SIGNAL = 0.98
-# Probability of lines at half multiples of the input frequency in a response that repeats each period.
-DOUBLED = 1e-4
+# Probability of a false alarm in noise: of a tone, or of a response that repeats only every other period.
+FALSE_ALARM = 1e-4
 # Intermodulation lines of a tone and the harmonics hide the noise as close as this (resolutions); they are
 # left out if this share of the lines remains.
 TONE_LINE_WIDTH, LEAST_CLEAR_SHARE = 0.8, 0.3
@@ -192,7 +192,7 @@ def _doubled(spectrum: Spectrum, tone: float | None) -> bool:
         return False
     odd = np.arange(1, 2 * spectrum.harmonics + 2, 2)
     power = np.sort(spectrum.excess_at(0.5 * spectrum.frequency * odd))[:-1]
-    return bool(gammaincc(power.size * spectrum.mean.shape[0], power.sum()) < DOUBLED)
+    return bool(gammaincc(power.size * spectrum.mean.shape[0], power.sum()) < FALSE_ALARM)
 
 
 def fitted(

@@ -11,21 +11,19 @@ from scipy.special import gammaln, logsumexp, xlogy
 
 from wedgesweep.diagnose.evaluation import Point
 from wedgesweep.diagnose.steady.harmonic_fit import BAND, REMOVED, regressors, resolvable, within_band
-from wedgesweep.diagnose.steady.spectra import Spectrum
+from wedgesweep.diagnose.steady.spectra import FALSE_ALARM, Spectrum
 
 # The effect that makes one, and its number that the records tell directly.
 TONE = "stray_vibration"
 TONE_FREQUENCY = f"{TONE}.frequency_hz"
-# Probability of a false alarm in noise.
-FALSE_ALARM = 1e-4
 # Grid points per resolution of the longest record.
 FINE = 4
 # Lowest frequency (Hz) that is searched on a rig like the bench: anything slower is drift.
 LOWEST = 1.0
 # Share of a tone that must not be a harmonic for its power to count in full.
 NOT_HARMONIC = 0.05
-# Tests whose frequencies differ by less than this share have the same frequency.
-SAME_FREQUENCY = 0.02
+# Tests whose frequencies, or amplitudes, differ by less than this share have the same one.
+SAME = 0.02
 # Least curvature of the power over a step of the grid: below it the frequency is undetermined.
 LEAST_CURVATURE = 1e-3
 # Phases at which a fit of the phase begins.
@@ -52,7 +50,7 @@ def find(spectra: Sequence[Spectrum], lowest: float = LOWEST) -> Tone | None:
     tone cannot be told from half its multiples.
     """
     frequency = np.array([s.frequency for s in spectra])
-    alike = np.abs(np.log(frequency / frequency[:, None])) < SAME_FREQUENCY
+    alike = np.abs(np.log(frequency / frequency[:, None])) < SAME
     longest = max(s.duration for s in spectra)
     highest = max(BAND / s.interval for s in spectra)
     grid = np.arange(lowest, highest, 1.0 / longest / FINE)

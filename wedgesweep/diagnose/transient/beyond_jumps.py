@@ -26,19 +26,14 @@ AT_REST = 0.05
 # A test stands out if its misfit, over the median of all tests, is DEVIATIONS standard deviations of noise
 # too large. At most this share of the tests can stand out: where most are wrong, the model is.
 DEVIATIONS, MOST = 4.0, 1.0 / 3.0
-# Where the median is WRONG times the squared noise the model is wrong, and tests differ anyway: then a test
-# stands out if it has CLEARLY times the median.
-WRONG, CLEARLY = 10.0, 3.0
 
 
 def standing_out(chi2: np.ndarray, dof: np.ndarray) -> np.ndarray:
     """Tests whose misfit (T,) is much larger than that of most, the worst first."""
     median = max(float(np.median(chi2 / dof)), 1.0)
-    over_median = chi2 / dof / median
-    deviations = (over_median - 1.0) * np.sqrt(0.5 * dof)
-    clear = (deviations > DEVIATIONS) & (over_median > (CLEARLY if median > WRONG else 1.0))
+    deviations = (chi2 / dof / median - 1.0) * np.sqrt(0.5 * dof)
     worst = np.argsort(-deviations)[: max(int(MOST * dof.size), 1)]
-    return worst[clear[worst]]
+    return worst[deviations[worst] > DEVIATIONS]
 
 
 def places(reach: float, velocity: float) -> np.ndarray:

@@ -15,9 +15,9 @@ from wedgesweep.errors import InputError
 
 # Natural periods of a window, and of what is simulated before it so that the start of bristles is forgotten.
 WINDOW, LEAD = 10.0, 1.0
-# The same under an input, which keeps lifting wedges off: they forget their start later. Of these periods the
-# last RECENT ones count for the noise of the input.
-DRIVEN_LEAD, RECENT = 1.5, 1.0
+# The lead under an input, which keeps lifting wedges off: they forget their start later. Of its periods the
+# last LEAD ones count for the noise of the input.
+DRIVEN_LEAD = 1.5
 # A motion whose peak-to-peak over a natural period is below this share of that of its record may stick: when
 # friction lets go depends on how long it has stuck.
 STUCK = 0.05
@@ -140,7 +140,7 @@ def windows(record: Recorded, model: Config, law: str, fewest: int = 1) -> list[
                 spectra=tuple(record.spectra),
                 passed_on=passed_on,
                 coefficients=min(max(ceil(top * inside / pi), FEWEST_COMPARED), inside),
-                grid=Grid(lead, inside, 2.0 * pi * rate / period, min(lead, ceil(RECENT * period))),
+                grid=Grid(lead, inside, 2.0 * pi * rate / period, min(lead, ceil(LEAD * period))),
                 input=starting_at(given.acting, start / rate) if given else no_input((end - start) / rate),
                 input_noise=input_noise,
                 length=max(float(np.abs(displacement[start:end] - rest).max()), SMALL * length),

@@ -5,7 +5,7 @@ import numpy as np
 from wedgesweep.diagnose.channel_factors import channel_factors
 from wedgesweep.diagnose.noise_spectrum import NoiseSpectrum
 from wedgesweep.diagnose.transient.cutting import FEWEST, Recorded, windows
-from wedgesweep.diagnose.transient.noise import Channels, NoiseEvidence, evidence_of_noise, from_repeats
+from wedgesweep.diagnose.transient.noise import Channels, Spectra, from_repeats, noise_of_channels
 from wedgesweep.diagnose.transient.recorded_input import RecordedInput
 from wedgesweep.diagnose.transient.transient_data import TransientData
 from wedgesweep.diagnose.transient.window import RecordWindow
@@ -23,7 +23,7 @@ def transient_data(measurement: Measurement) -> TransientData:
     """Windows of all tests."""
     tests = measurement.tests
     channels = [_channels(measurement, test) for test in tests]
-    evidence, spectra = _noise(measurement, channels)
+    spectra = _noise(measurement, channels)
     fewest = FEWEST if len(tests) == 1 else 1
     by_test: list[list[RecordWindow]] = []
     for number, test in enumerate(tests):
@@ -40,7 +40,6 @@ def transient_data(measurement: Measurement) -> TransientData:
         measurement.uncertain_of_records,
         measurement.model_error,
         measurement.input_gain_std if any(own.driven for own in found) else 0.0,
-        evidence=evidence,
     )
 
 
@@ -60,16 +59,13 @@ def _channels(measurement: Measurement, test: TestRecord) -> Channels:
     return {MOTIONS.index(name): test.responses[name] for name in measurement.compared(test)}
 
 
-def _noise(
-    measurement: Measurement, channels: list[Channels]
-) -> tuple[tuple[NoiseEvidence, ...], dict[tuple[int, int], NoiseSpectrum]]:
-    """Evidence of the noise, and the noise of each channel of each test, by number and order."""
+def _noise(measurement: Measurement, channels: list[Channels]) -> Spectra:
+    """The noise of each channel of each test, by number and order."""
     orders = {order for own in channels for order in own}
     of = {order: measurement.motion_of(MOTIONS[order]) for order in orders}
-    evidence = evidence_of_noise(channels, of, [test.sampling_rate for test in measurement.tests])
-    found = {key: each for one in evidence for key, each in one.bounds.most.items()}
+    found = noise_of_channels(channels, of, [test.sampling_rate for test in measurement.tests])
     repeated = from_repeats(measurement.tests, channels)
-    return evidence, found | {key: each.up_to(found[key].highest) for key, each in repeated.items()}
+    return found | {key: each.up_to(found[key].highest) for key, each in repeated.items()}
 
 
 def _refuse_noise(channels: Channels, spectra: dict[int, NoiseSpectrum]) -> None:

@@ -13,12 +13,10 @@ from typing import NamedTuple
 import numpy as np
 from scipy.fft import dct
 
-from wedgesweep.diagnose.decorrelation import Decorrelation, decorrelation
+from wedgesweep.diagnose.decorrelation import LARGEST_BLOCK, Decorrelation, decorrelation
 from wedgesweep.diagnose.smoothing import derivative
 from wedgesweep.sampled_input import SampledInput, polynomials
 
-# Number of coefficients of a channel, from the lowest frequency up, whose correlation is accounted for.
-MOST_CORRELATED = 400
 # Knots of the input beyond a window to either side.
 BEYOND = 3
 
@@ -98,7 +96,7 @@ def converted(parts: Cosines, shares: Sequence[float], orders: Sequence[int], le
 
 
 def decorrelated(own: np.ndarray, changes: np.ndarray) -> tuple[Decorrelation, ...]:
-    """Combinations with independent noise of the first MOST_CORRELATED coefficients of each channel.
+    """Combinations with independent noise of the first LARGEST_BLOCK coefficients of each channel.
 
     Parameters
     ----------
@@ -107,7 +105,7 @@ def decorrelated(own: np.ndarray, changes: np.ndarray) -> tuple[Decorrelation, .
     changes : ndarray, shape (k, C, n)
         What each cosine of the input does to each channel.
     """
-    size = min(own.shape[1], MOST_CORRELATED)
+    size = min(own.shape[1], LARGEST_BLOCK)
     by_input = np.moveaxis(dct(changes, norm="ortho")[..., :size], 1, 0)
 
     def combinations(variance: np.ndarray, change: np.ndarray) -> Decorrelation:

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from wedgesweep.diagnose import repeats
-from wedgesweep.diagnose.noise_bins import OwnNoise, noise_bins, quiet_bins, without_skirts
+from wedgesweep.diagnose.noise_bins import OwnNoise, noise_bins, quiet_bins
 from wedgesweep.diagnose.noise_spectrum import (
     BEST_FIT,
     FROM_REPEATS,
@@ -112,78 +112,26 @@ class NoiseEvidence:
                 found.append(each.bins_of(order, known[t, other]).up_to(first))
         return found
 
-    def without_skirts(self, order: int, known: Spectra) -> dict[Key, OwnNoise]:
-        """Own bins of one channel, without skirts of the motion, which only the other tests reveal."""
-        own = {key: each for key, each in self.own.items() if key[1] == order}
-        others = [self.others(key, each.first, known) for key, each in own.items()]
-        return dict(zip(own, without_skirts(list(own.values()), others), strict=True))
-
     def fitted(self, own: Mapping[Key, OwnNoise], known: Spectra, choice: Choice) -> Spectra:
         """Noise of one channel in all tests, from its ``own`` bins and from other sources."""
-        bins = self._bins(own, known)
+        bins = [[its.bins, *self.others(key, its.first, known)] for key, its in own.items()]
         if not _near_the_motion(bins, own.values()):
             choice = choice._replace(coloured=0.0)
-        return _by_key(own, fit_spectra(bins, choice))
+        both = zip(own, fit_spectra(bins, choice), strict=True)
+        return {key: each.up_to(own[key].highest) for key, each in both}
 
-    @cached_property
-    def bounds(self) -> "NoiseBounds":
-        """Bounds of the noise of all channels: the most of one goes with the least of the others."""
-        own: list[dict[Key, OwnNoise]] = []
-        best: Spectra = {}
-        for order in self.of:
-            own.append(self.without_skirts(order, best))
-            best |= self.fitted(own[-1], best, BEST_FIT)
-        for _ in range(ROUNDS):
+    @property
+    def most(self) -> Spectra:
+        """The most noise of all channels: the most of one goes with the least of the others."""
+        own = [{key: each for key, each in self.own.items() if key[1] == order} for order in self.of]
+        most: Spectra = {}
+        for _ in range(1 + ROUNDS):
             for each in own:
-                best |= self.fitted(each, best, BEST_FIT)
-        most = best
+                most |= self.fitted(each, most, BEST_FIT)
         for _ in range(ROUNDS):
             least = {key: one for each in own for key, one in self.fitted(each, most, LEAST_NOISE).items()}
             most = {key: one for each in own for key, one in self.fitted(each, least, MOST_NOISE).items()}
-        return NoiseBounds(most, least, own)
-
-    @cached_property
-    def far_above(self) -> list[dict[Key, OwnNoise]]:
-        """Own bins, test by test, of the channels whose noise shows only well above the motion."""
-        bins = [self._bins(its, self.bounds.least) for its in self.bounds.own]
-        both = zip(bins, self.bounds.own, strict=True)
-        return [its for each, its in both if not _near_the_motion(each, its.values())]
-
-    def _bins(self, own: Mapping[Key, OwnNoise], known: Spectra) -> list[list[NoiseBins]]:
-        return [[its.bins, *self.others(key, its.first, known)] for key, its in own.items()]
-
-    def bounded(self, left: Mapping[Key, Sequence[NoiseBins]]) -> Spectra:
-        """Noise of the channels ``far_above``, bounded by what an explanation leaves of them.
-
-        ``left``: bins of the residual of each window of a channel. A residual is noise and missing physics
-        together. It may show that there is less noise than ``bounds.most``, never that there is more.
-        """
-        found: Spectra = {}
-        for own in self.far_above:
-            bins = self._bins(own, self.bounds.least)
-            more = [[each.up_to(its.first) for each in left.get(key, ())] for key, its in own.items()]
-            spectra = _by_key(
-                own, fit_spectra([[*one, *other] for one, other in zip(bins, more, strict=True)], MOST_NOISE)
-            )
-            for key, its in own.items():
-                most, at = self.bounds.most[key], np.array(its.main)
-                found[key] = spectra[key] if spectra[key](at) < most(at) else most
-        return found
-
-
-class NoiseBounds(NamedTuple):
-    """The ``most`` and the ``least`` noise of every channel of every test that the records allow.
-
-    ``own``: for each channel, the bins of noise that each test shows by itself.
-    """
-
-    most: Spectra
-    least: Spectra
-    own: list[dict[Key, OwnNoise]]
-
-
-def _by_key(own: Mapping[Key, OwnNoise], spectra: Sequence[NoiseSpectrum]) -> Spectra:
-    return {key: each.up_to(own[key].highest) for key, each in zip(own, spectra, strict=True)}
+        return most
 
 
 def _near_the_motion(tests: Sequence[Sequence[NoiseBins]], own: Iterable[OwnNoise]) -> bool:
@@ -195,10 +143,8 @@ def _near_the_motion(tests: Sequence[Sequence[NoiseBins]], own: Iterable[OwnNois
     return sum(each.up_to(NEAR * its.main).frequency.size for bins, its in pairs for each in bins) >= FEWEST
 
 
-def evidence_of_noise(
-    tests: Sequence[Channels], of: Mapping[int, str], rates: Sequence[float]
-) -> tuple[NoiseEvidence, ...]:
-    """What tests show of the noise of their channels; those that were sampled alike together.
+def noise_of_channels(tests: Sequence[Channels], of: Mapping[int, str], rates: Sequence[float]) -> Spectra:
+    """The noise of each channel of each test; tests that were sampled alike are looked at together.
 
     Parameters
     ----------
@@ -209,12 +155,12 @@ def evidence_of_noise(
     rates : sequence of float
         Sampling rates (Hz).
     """
-    found = []
+    found: Spectra = {}
     for rows in _sampled_alike(rates):
         alike = {t: _smooth(tests[t]) for t in rows}
         orders = sorted({order for its in alike.values() for order in its})
-        found.append(NoiseEvidence(alike, {order: of[order] for order in orders}, rates[rows[0]]))
-    return tuple(found)
+        found |= NoiseEvidence(alike, {order: of[order] for order in orders}, rates[rows[0]]).most
+    return found
 
 
 def _sampled_alike(rates: Sequence[float]) -> list[list[int]]:

@@ -26,11 +26,9 @@ from wedgesweep.diagnose.evaluation import (
 from wedgesweep.diagnose.fit_data import INPUT_GAIN, Arrays, Motion
 from wedgesweep.diagnose.model import TOLERANCE, Fit, Model
 from wedgesweep.diagnose.next_test.sensors import Sensors, median_test
-from wedgesweep.diagnose.noise_spectrum import NoiseBins
 from wedgesweep.diagnose.sampled_data import SampledData, best_of_each_test, padded
 from wedgesweep.diagnose.transient import arrays
 from wedgesweep.diagnose.transient.beyond_jumps import best_start, places, standing_out
-from wedgesweep.diagnose.transient.noise import Key, NoiseEvidence
 from wedgesweep.diagnose.transient.window import BODIES, RecordWindow, simulated_together
 from wedgesweep.effects import acting
 from wedgesweep.effects.channel_delay import NAME as DELAY
@@ -46,9 +44,8 @@ OF_SENSORS = {"displacement_gain": 0, "velocity_lag": 1}
 START = (NuisanceParameter(step=1e-4, max_step=0.1), NuisanceParameter(step=1e-4, max_step=0.1))
 # The same of each of BODIES, in their order.
 BODY_STARTS = START * len(BODIES)
-# Offsets of the start, over the largest displacement, that are tried beside all ``places`` if there are at
-# most FEW points.
-OFFSETS, FEW = (-0.1, -0.05, -0.02, 0.02, 0.05, 0.1), 3
+# All ``places`` are tried as starts if there are at most FEW points.
+FEW = 3
 # Samples that are simulated at a time, at most: they take some hundred megabytes.
 MOST_TOGETHER = 4_000_000
 # Gain of a recorded input, as its logarithm.
@@ -60,7 +57,7 @@ class TransientData(SampledData):
     """T windows; arrays (T, m) hold the coefficients of their channels, one channel after the other.
 
     ``decorrelations``: combinations with independent noise of the first coefficients of each channel of each
-    test; without them coefficients count as independent. ``evidence``: what the records show of their noise.
+    test; without them coefficients count as independent.
     ``gain_std``: relative standard deviation of the gain of recorded inputs, 0 for exact ones or none.
     """
 
@@ -70,10 +67,8 @@ class TransientData(SampledData):
     gain_std: float = 0.0
     resampled: np.ndarray | None = None
     decorrelations: tuple[tuple[Decorrelation, ...], ...] | None = None
-    evidence: tuple[NoiseEvidence, ...] = ()
 
     kind = "transient"
-    shares_nuisances = True
 
     @cached_property
     def names(self) -> tuple[str, ...]:  # type: ignore[override]
@@ -111,34 +106,16 @@ class TransientData(SampledData):
                 yield t, slice(first, first + each.std.size), each
 
     def renewed(self, scenario: Scenario) -> Self:
-        """The data with their noise as a scenario has it.
-
-        Its response passes on the noise of the input. Noise of a channel that shows only far above the motion
-        is at most what the scenario leaves of that channel.
-        """
-        data = self._with_bounded_noise(scenario)
-        if not any(own.driven for own in data.windows):
-            return data
-        (values,) = data.known_values([scenario], OF_INPUT)
-        starts, gains = data._states(scenario.point), data._gain(scenario)
+        """The data with the noise of the input as the response of a scenario passes it on."""
+        if not any(own.driven for own in self.windows):
+            return self
+        (values,) = self.known_values([scenario], OF_INPUT)
+        starts, gains = self._states(scenario.point), self._gain(scenario)
         found = []
-        for own, start, gain in zip(data.windows, starts, gains, strict=True):
+        for own, start, gain in zip(self.windows, starts, gains, strict=True):
             work.add(0.0)  # no part of a search, but it takes time
             found.append(own.decorrelation(values, start, gain, TOLERANCE))
-        return replace(data, decorrelations=tuple(found))
-
-    def _with_bounded_noise(self, scenario: Scenario) -> Self:
-        """The data with less noise where the residual of a scenario shows that there is less."""
-        if not any(each.far_above for each in self.evidence):
-            return self
-        left = self.without_zero(self.measured - np.nan_to_num(self.simulated([scenario])[0]))
-        bins: dict[Key, list[NoiseBins]] = {}
-        for own, row in zip(self.windows, left, strict=True):
-            shape = own.compared.shape
-            for key, each in own.noise_in(row[: own.compared.size].reshape(shape)).items():
-                bins.setdefault(key, []).append(each)
-        bounded = {key: each for one in self.evidence for key, each in one.bounded(bins).items()}
-        return replace(self, windows=tuple(own.with_noise(bounded) for own in self.windows))
+        return replace(self, decorrelations=tuple(found))
 
     @cached_property
     def size(self) -> np.ndarray:
@@ -271,8 +248,6 @@ class TransientData(SampledData):
         stated, at_rest = self.start()
         starts = [stated]
         if len(points) <= FEW:
-            first = np.arange(stated.shape[1]) == 0
-            starts += [stated + offset * first for offset in OFFSETS]
             unmoved = np.zeros((self.tests, stated.shape[1] - len(START)))
             starts += [np.hstack([each, unmoved]) for each in self._anywhere.swapaxes(0, 1)]
         moved = [[replace(each, nuisance=start, warm=at_rest) for each in points] for start in starts]
@@ -288,10 +263,6 @@ class TransientData(SampledData):
             starts = [each[test, : len(START)] for each in (found, stated)]
             found[test, : len(START)] = best_start(misfit, starts, self._anywhere[test])
         return None if np.array_equal(found, evaluation.point.nuisance) else found
-
-    def gained_by_other_nuisances(self, evaluation: Evaluation) -> float:
-        misfit = evaluation.chi2_by_test
-        return float(misfit[standing_out(misfit, self.dof)].sum())
 
     def described(self, point: Point) -> list[dict[str, Any]]:
         return arrays.described(self, point)

@@ -4,8 +4,8 @@ The cosine coefficients (DCT-II) of the window are compared, up to the highest f
 have: under noise whose spectrum is smooth they are all but independent.
 """
 
-from collections.abc import Hashable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Hashable, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from math import pi, sqrt
 from typing import NamedTuple
@@ -17,7 +17,7 @@ from wedgesweep.config import Config
 from wedgesweep.diagnose.decorrelation import Decorrelation
 from wedgesweep.diagnose.fit_data import Motion
 from wedgesweep.diagnose.fit_parameters import Values
-from wedgesweep.diagnose.noise_spectrum import FROM_SPECTRUM, NoiseBins, NoiseSpectrum
+from wedgesweep.diagnose.noise_spectrum import NoiseSpectrum
 from wedgesweep.diagnose.transient.input_noise import (
     InputNoise,
     converted,
@@ -25,7 +25,7 @@ from wedgesweep.diagnose.transient.input_noise import (
     decorrelated,
     disturbed,
 )
-from wedgesweep.diagnose.transient.noise import ACCELERATION, Key
+from wedgesweep.diagnose.transient.noise import ACCELERATION
 from wedgesweep.effects import merge
 from wedgesweep.effects.channel_delay import NAME as DELAY
 from wedgesweep.sampled_input import SampledInput, set_sampled
@@ -34,8 +34,6 @@ from wedgesweep.systems import set_states, state_count
 
 # Standard deviation of an accelerometer's zero over the rms of its signal: as good as unknown.
 UNKNOWN_ZERO = 1e3
-# Number of coefficients, the lowest ones, that do not show noise: zero and start are fitted to them.
-ABSORBED = 4
 # Effects with a body of its own that moves, whose start is fitted as well.
 BODIES = "column_compliance", "fixture_resonance"
 # Error of a simulation over the rms of the motion; it counts as noise.
@@ -202,21 +200,6 @@ class RecordWindow:
     def noise(self) -> np.ndarray:
         """Standard deviation (C, K) of each coefficient."""
         return np.sqrt(self._own_variance + self.by_input)
-
-    def noise_in(self, left: np.ndarray) -> dict[Key, NoiseBins]:
-        """The residual of the coefficients (C, K) as bins of noise, by test and order of the channel."""
-        both = zip(self.orders, left[:, ABSORBED:] ** 2, self.by_input[:, ABSORBED:], strict=True)
-        bins = {order: NoiseBins(self._frequency[ABSORBED:], power, known) for order, power, known in both}
-        return {(self.number, order): each for order, each in bins.items()}
-
-    def with_noise(self, estimates: Mapping[Key, NoiseSpectrum]) -> "RecordWindow":
-        """The window with new estimates of its noise, but not where repeats of the test showed it."""
-        own = zip(self.spectra, self.orders, strict=True)
-        spectra = tuple(
-            estimates.get((self.number, order), each) if each.source == FROM_SPECTRUM else each
-            for each, order in own
-        )
-        return replace(self, spectra=spectra)
 
     def decorrelation(
         self, values: Values, start: np.ndarray, gain: float, tolerance: float
