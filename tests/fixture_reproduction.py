@@ -1,10 +1,9 @@
-"""Runs for tests of the reproduction, made without solving anything, and the schema of its data."""
+"""Runs for tests of the reproduction, made without solving anything."""
 
 from math import pi
 
 import xarray as xr
 from reproduce import laws, sticking, suspension
-from reproduce.findings import VERDICTS
 from reproduce.runs import Run, Runs
 
 from tests import fixture_dataset
@@ -19,53 +18,6 @@ ATTRIBUTES = {
     "config_sha256": "0" * 64,
     "wedgesweep_version": "0",
     "package_versions": '{"numpy": "0"}',
-}
-NUMBER = {"type": ["number", "null"]}
-CHECK = {
-    "type": "object",
-    "properties": {
-        "statement": {"type": "string"},
-        "here": NUMBER,
-        "criterion": {"type": "string"},
-        "holds": {"type": ["boolean", "null"]},
-    },
-    "required": ["statement", "here", "criterion", "holds"],
-    "additionalProperties": False,
-}
-FINDING = {
-    "here": {"type": "string", "minLength": 1},
-    **{name: {"enum": list(VERDICTS)} for name in ("verdict", "recorded")},
-    "checks": {"type": "array", "items": CHECK, "minItems": 1},
-}
-CLAIM = {
-    "type": "object",
-    "properties": {
-        "number": {"type": "integer"},
-        **{name: {"type": "string", "minLength": 1} for name in ("claim", "paper", "reason")},
-        **FINDING,
-        "unilateral": {
-            "type": "object",
-            "properties": FINDING,
-            "required": list(FINDING),
-            "additionalProperties": False,
-        },
-    },
-    "required": ["number", "claim", "paper", "reason", *FINDING],
-    "additionalProperties": False,
-}
-SCHEMA = {
-    "type": "object",
-    "properties": {
-        "agrees": {"type": "boolean"},
-        "verdicts": {"type": "object", "propertyNames": {"enum": list(VERDICTS)}},
-        "claims": {"type": "array", "items": CLAIM, "minItems": 17, "maxItems": 17},
-        "published": {"type": "array", "items": CHECK, "minItems": 1},
-        "cases": {"type": "array", "minItems": 9},
-        "failed": {"type": "array", "items": {"type": "string"}},
-        "runs": {"type": "object", "required": ["paper", "paper-y0", "breakaway", "paper-unilateral"]},
-    },
-    "required": ["agrees", "verdicts", "claims", "published", "cases", "failed", "runs"],
-    "additionalProperties": False,
 }
 
 

@@ -95,8 +95,22 @@ def _default_signals() -> None:
     signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
 
+def ended(*words: str, directory: Path | None = None, **variables: str) -> subprocess.CompletedProcess:
+    """Python with these words, in a process of its own, which must succeed."""
+    done = subprocess.run(
+        [sys.executable, *words],
+        cwd=directory,
+        env=environment(**variables),
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr + done.stdout
+    return done
+
+
 def environment(**variables: str) -> dict[str, str]:
-    return {**os.environ, "PYTHONPATH": str(ROOT), **variables}
+    return os.environ | {"PYTHONPATH": str(ROOT)} | variables
 
 
 def assert_same_numbers(found: xr.Dataset, expected: xr.Dataset) -> None:

@@ -3,8 +3,6 @@
 import json
 import os
 import re
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -56,8 +54,7 @@ def test_help_and_version():
 
 
 def test_module_and_shell_completion_answer(here):
-    environment = small_sweep.environment(_WEDGESWEEP_COMPLETE="bash_source")
-    found = subprocess.run(small_sweep.command(), env=environment, capture_output=True, text=True, check=True)
+    found = small_sweep.ended("-m", "wedgesweep", _WEDGESWEEP_COMPLETE="bash_source")
     assert "complete -o" in found.stdout
 
 
@@ -69,8 +66,7 @@ def test_every_process_gets_one_thread():
         "try: main()\n"
         "finally: assert [os.environ[name] for name in THREADS] == ['1', '1', '1']"
     )
-    environment = small_sweep.environment(OPENBLAS_NUM_THREADS="7")
-    subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, check=True)
+    small_sweep.ended("-c", code, OPENBLAS_NUM_THREADS="7")
 
 
 def test_init_writes_a_config_that_is_valid(here):

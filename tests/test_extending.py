@@ -3,14 +3,13 @@
 import json
 import os
 import re
-import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 import xarray as xr
 
-from tests import fixture_dataset
+from tests import fixture_dataset, small_sweep
 from wedgesweep import figures
 from wedgesweep.figures import catalogue
 
@@ -85,17 +84,8 @@ def python(tmp_path):
     def run(code, examples, *arguments):
         for file in examples:
             (tmp_path / file).write_text(example(file))
-        variables = {"PYTHONPATH": os.pathsep.join([str(REPOSITORY), str(tmp_path)])}
-        done = subprocess.run(
-            [sys.executable, "-c", code, *arguments],
-            cwd=tmp_path,
-            env={**os.environ, **variables},
-            capture_output=True,
-            text=True,
-            check=False,
-        )
-        assert done.returncode == 0, done.stderr + done.stdout
-        return done.stdout
+        places = os.pathsep.join([str(REPOSITORY), str(tmp_path)])
+        return small_sweep.ended("-c", code, *arguments, directory=tmp_path, PYTHONPATH=places).stdout
 
     return run
 

@@ -2,13 +2,13 @@
 
 import ast
 import re
-import subprocess
-import sys
 from functools import cache
 from graphlib import TopologicalSorter
 from pathlib import Path
 
 import pytest
+
+from tests import small_sweep
 
 ROOT = Path(__file__).parent.parent
 PACKAGE, SCRIPTS = ROOT / "wedgesweep", ROOT / "scripts"
@@ -191,5 +191,5 @@ UNLOADED = {
 @pytest.mark.parametrize("code", UNLOADED)
 def test_what_is_not_needed_is_not_loaded(code):
     script = f"import sys\n{code}\nprint('loaded:', *sys.modules.keys() & {UNLOADED[code]!r})"
-    found = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    found = small_sweep.ended("-c", script)
     assert found.stdout.splitlines()[-1] == "loaded:"

@@ -2,12 +2,11 @@
 
 import json
 import os
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
+from tests import small_sweep
 from wedgesweep import friction, kernels, systems
 from wedgesweep.systems.suspension import parameters
 
@@ -92,15 +91,7 @@ print(json.dumps([before, after_import, state()]))
 
 def python(code, *arguments, **variables):
     """Standard output of a process of its own."""
-    done = subprocess.run(
-        [sys.executable, "-c", code, *arguments],
-        env={**os.environ, "PYTHONPATH": str(ROOT), **variables},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert done.returncode == 0, done.stderr
-    return done.stdout
+    return small_sweep.ended("-c", code, *arguments, **variables).stdout
 
 
 @pytest.fixture
@@ -168,16 +159,8 @@ def test_a_cache_that_cannot_be_written_is_told_and_another_one_used(tmp_path):
         "from wedgesweep import kernels; from wedgesweep.cli.compiling import announce_compiling;"
         "announce_compiling(); announce_compiling(); print(kernels.folder())"
     )
-    places = [
-        subprocess.run(
-            [sys.executable, "-c", code],
-            env={**os.environ, kernels.VARIABLE: str(wanted), "TMPDIR": str(tmp_path)},
-            capture_output=True,
-            text=True,
-            check=True,
-        )
-        for _ in range(2)
-    ]
+    variables = {kernels.VARIABLE: str(wanted), "TMPDIR": str(tmp_path)}
+    places = [small_sweep.ended("-c", code, **variables) for _ in range(2)]
     assert places[0].stderr.count(f"{wanted} cannot be written to: compiled code is kept in {tmp_path}") == 1
     folder = Path(places[0].stdout.strip())
     assert folder.is_dir()

@@ -1,17 +1,15 @@
 """The tutorial's commands run as they stand, and every command line in the documentation is one."""
 
 import json
-import os
 import re
 import shlex
 import shutil
-import subprocess
-import sys
 from pathlib import Path
 
 import as_it_comes
 import pytest
 
+from tests import small_sweep
 from tests.command import invoke
 from wedgesweep.cli import cli
 
@@ -60,12 +58,6 @@ def edit(path, beginning):
     Path(path).write_text(changed)
 
 
-def in_process(words):
-    """Run a command in a process of its own: an effect from outside of the package stays there."""
-    search = {**os.environ, "PYTHONPATH": str(ROOT)}
-    subprocess.run([sys.executable, "-m", "wedgesweep", *words], env=search, check=True)
-
-
 @pytest.mark.acceptance
 def test_the_tutorial_runs(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
@@ -76,7 +68,9 @@ def test_the_tutorial_runs(tmp_path, monkeypatch):
         if words[1] == "model.toml":
             edit("measured.toml", "    force = ")
         if "--plugin" in words:
-            in_process([*words, "--effects", "cubic_stiffness,quintic_stiffness", "--no-report"])
+            # In a process of its own, in which an effect from outside of the package stays.
+            few = ("--effects", "cubic_stiffness,quintic_stiffness", "--no-report")
+            small_sweep.ended("-m", "wedgesweep", *words, *few)
             continue
         words += SHORTENED.get(" ".join(words[:2]), SHORTENED.get(words[0], ()))
         told[words[0]] = invoke(*words)

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from tests.diagnose.answers import diagnosed, is_told
 from tests.diagnose.test_transients import MEASURED, OSCILLATOR, WEDGE
-from wedgesweep import api
 from wedgesweep.config import parse
 from wedgesweep.diagnose.diagnosis import data_of
 from wedgesweep.diagnose.next_test.transients import releases
@@ -52,11 +52,8 @@ def test_a_cause_is_named_from_an_accelerometer_on_a_mass_that_is_released(tmp_p
         # An accelerometer that does not stand upright shows a share of gravity.
         tables.append([np.arange(a.size) / rate, a + 0.3 + noise * rng.standard_normal(a.size)])
     path = write(tmp_path, rig, tables, CHANNEL.format(""))
-    found = api.diagnose_measurement(read(path), effects=CANDIDATES, n_jobs=1)
-    assert [each["effect"] for each in found.causes] == list(effects)
-    (numbers,) = (each["parameters"] for each in found.causes)
-    (estimate,), (true,) = numbers.values(), next(iter(effects.values())).values()
-    assert estimate["value"] == pytest.approx(true, rel=0.03)
+    found = diagnosed(path, CANDIDATES)
+    is_told(found, effects, 0.03)
     assert list(found.data["channel"].values) == ["acceleration"]
 
 
@@ -98,9 +95,7 @@ def test_the_acceleration_against_the_ground_under_a_sweep(tmp_path):
     table = [time, absolute + noise * rng.standard_normal(time.size), u]
     columns = CHANNEL.format(', of = "absolute"')
     columns += 'input = { column = "u", unit = "m/s^2", quantity = "acceleration" }\n'
-    found = api.diagnose_measurement(
-        read(write(tmp_path, rig, [table], columns)), effects=CANDIDATES, n_jobs=1
-    )
+    found = diagnosed(write(tmp_path, rig, [table], columns), CANDIDATES)
     assert [each["effect"] for each in found.causes] == list(effects)
 
 

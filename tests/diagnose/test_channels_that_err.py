@@ -68,7 +68,7 @@ def loops(late: float = 0.0, gain: float = 1.0) -> list[np.ndarray]:
 
 def driven(late: float = 0.0, gain: float = 1.0) -> list[np.ndarray]:
     """Responses to swept forces; the displacement is late (s), or what acts is ``gain`` times the record."""
-    time, found = np.arange(6000) / RATE, []
+    time, found = np.arange(3000) / RATE, []
     for low, high in ((3.0, 20.0), (20.0, 5.0)):
         force = 20.0 * np.sin(2.0 * np.pi * (low * time + 0.5 * (high - low) / time[-1] * time**2))
         system = ([1.0], [MASS, DAMPING, STIFFNESS])

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from tests.command import invoke
+from tests.diagnose.test_loops import MEASURED, TEST
 from wedgesweep import api, config
 from wedgesweep.config import ConfigError, force_table
 from wedgesweep.effects import empirical_force as table
@@ -27,15 +28,7 @@ excitation = "force"
 frequency_hz = 10.0
 amplitude_N = 40.0
 """
-MEASURED = """
-[measurement]
-model = "model.toml"
-[measurement.columns]
-time = { column = "t", unit = "s" }
-displacement = { column = "x", unit = "mm" }
-force = { column = "F", unit = "N" }
-"""
-CANDIDATES = ["viscous_damping", "friction_level", "cubic_stiffness", "directional_friction"]
+CANDIDATES = ["friction_level", "cubic_stiffness"]
 
 
 def forces_at(forces, place, speed):
@@ -98,12 +91,11 @@ def hidden_in_loops(folder, hidden):
         force = 2.0 * a + 5000.0 * x + 50.0 * v + 10.0 * np.sign(v) + hidden(x, v)
         force += 5e-3 * force.std() * rng.standard_normal(t.size)
         seen = 1e3 * x + 3e-4 * rng.standard_normal(t.size)
-        names.append(f"{frequency}.csv")
+        names.append(frequency)
         rows = np.column_stack([t, seen, force])
-        np.savetxt(folder / names[-1], rows, "%.8g", ",", header="t,x,F", comments="")
-    tests = "".join(f'[[measurement.test]]\nfile = "{name}"\nkind = "loop"\n' for name in names)
+        np.savetxt(folder / f"{frequency}.csv", rows, "%.8g", ",", header="t,x,F", comments="")
     (folder / "model.toml").write_text(PLAIN)
-    (folder / "measured.toml").write_text(MEASURED + tests)
+    (folder / "measured.toml").write_text(MEASURED + "".join(map(TEST.format, names)))
     return read(folder / "measured.toml")
 
 

@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from tests.diagnose import test_loops, test_transients
+from tests.diagnose.answers import diagnosed
 from tests.diagnose.synthetic import drawn, steady_test
-from tests.diagnose.test_loops import CELLS, RATE, diagnosed
+from tests.diagnose.test_loops import CELLS, RATE
 from wedgesweep import toml
 from wedgesweep.config import parse
 from wedgesweep.diagnose import verdict

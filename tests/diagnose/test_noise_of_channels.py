@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from tests.diagnose.test_transients import HIDDEN, coloured, diagnosed, write
+from tests.diagnose.answers import diagnosed
+from tests.diagnose.test_transients import HIDDEN, coloured, write
 from wedgesweep.diagnose.noise_bins import noise_of_record, quiet_bins
 from wedgesweep.diagnose.noise_spectrum import periodogram
 from wedgesweep.diagnose.transient.channel_differences import differences

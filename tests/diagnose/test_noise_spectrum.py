@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from tests.diagnose.test_transients import HIDDEN, coloured, diagnosed, write
+from tests.diagnose.answers import diagnosed
+from tests.diagnose.test_transients import HIDDEN, coloured, write
 from wedgesweep.diagnose import repeats
 from wedgesweep.diagnose.loop.force_noise import FROM_MOTION
 from wedgesweep.diagnose.noise_bins import noise_of_record

@@ -3,8 +3,8 @@
 import agreement
 import pytest
 
-# Both leans, preload, guide friction; 100 locks, 196 has a force that is negative for a fortieth of a period.
-NUMBERS = (3, 10, 100, 196)
+# Both leans, preload; 100 locks, 196 has a force that is negative for a fortieth of a period.
+NUMBERS = (3, 100, 196)
 LOCKED = {100}
 
 
@@ -18,7 +18,7 @@ def test_radau_and_event_driven_agree(number):
 
 
 @pytest.mark.acceptance
-@pytest.mark.parametrize("number", [0, 2, 17])
+@pytest.mark.parametrize("number", [0, 17])
 def test_both_solvers_agree_on_random_transients(number):
     result = agreement.compared(agreement.transient, number)
     assert result.moved < agreement.MOVED

@@ -119,7 +119,7 @@ def case(law="coulomb", omega=0.8 * OMEGA_N, level=0.0, **changed):
 @pytest.mark.acceptance
 @pytest.mark.parametrize("level", [0.0, 0.3])
 def test_both_solvers_run_it_and_balance_its_energy(level):
-    found = [steady(case(level=level), each, rtol=1e-8, settle=30).numbers for each in SOLVERS]
+    found = [steady(case(level=level), each, rtol=1e-8, settle=15).numbers for each in SOLVERS]
     for number in ("amplitude_ratio", "dissipated_energy"):
         assert found[0][number] == pytest.approx(found[1][number], rel=1e-5), number
     for each in found:

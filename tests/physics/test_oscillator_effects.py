@@ -101,7 +101,7 @@ def test_energy_balances(name, law):
 def test_solvers_agree(name):
     """Also before the response is steady."""
     effect = case_of(name, "coulomb", STRENGTHS[name])
-    one, other = (steady(effect, solver, rtol=1e-8, settle=4).numbers for solver in SOLVERS)
+    one, other = (steady(effect, solver, rtol=1e-8, settle=2).numbers for solver in SOLVERS)
     # Bristles have no event where the slip velocity passes the bound of sticking: its share is a quadrature.
     for number in ("amplitude_ratio", "dissipated_energy", *["stick_fraction"] * (name != "presliding")):
         assert one[number] == pytest.approx(other[number], rel=1e-5, abs=1e-6), number

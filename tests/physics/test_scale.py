@@ -52,18 +52,17 @@ def test_motion_is_the_same_to_the_last_bits_where_factors_round_nothing(name, l
 
 
 @pytest.mark.acceptance
-@pytest.mark.parametrize("size", POWERS_OF_TWO.values(), ids=POWERS_OF_TWO)
 @pytest.mark.parametrize(
-    ("name", "law"),
+    ("name", "law", "size"),
     [
-        ("velocity_lag", "coulomb"),
-        ("velocity_lag", "exponential"),
-        ("fixture_resonance", "static-dynamic"),
-        ("ageing", "coulomb"),
+        ("velocity_lag", "coulomb", "froude"),
+        ("velocity_lag", "exponential", "heavier"),
+        ("fixture_resonance", "static-dynamic", "froude"),
+        ("ageing", "coulomb", "heavier"),
     ],
 )
 def test_the_reference_solver_has_no_units_of_its_own(name, law, size):
-    assert all(in_proportion(size, law, {name: mild(name)}, 1e-9, radau))
+    assert all(in_proportion(POWERS_OF_TWO[size], law, {name: mild(name)}, 1e-9, radau))
 
 
 @pytest.mark.parametrize("name", ["preload", "cubic_stiffness", "column_compliance", "velocity_lag"])

@@ -2,8 +2,6 @@
 
 import os
 import signal
-import subprocess
-import sys
 import time
 from collections import Counter
 
@@ -78,8 +76,7 @@ def test_threads_of_numpys_libraries_change_no_bit(finished, tmp_path):
     found = set()
     for threads in ("1", "4"):
         names = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
-        environment = small_sweep.environment(**dict.fromkeys(names, threads))
-        subprocess.run([sys.executable, "-c", code], cwd=tmp_path, env=environment, check=True)
+        small_sweep.ended("-c", code, directory=tmp_path, **dict.fromkeys(names, threads))
         found.add((tmp_path / "records").read_bytes())
     assert len(found) == 1
     records = np.frombuffer(found.pop(), finished[0].dtype)

@@ -57,7 +57,7 @@ def test_an_effect_that_is_no_candidate_is_not_named(tmp_path):
     assert found.verdict in ABSTAINING
 
 
-@pytest.mark.parametrize("name", sorted(set(examples.TRUTH) - set(examples.QUICK)))
+@pytest.mark.parametrize("name", sorted(examples.TRUTH))
 def test_example_comes_out_right(name, tmp_path):
     examples.comes_out_right(name, tmp_path)
 

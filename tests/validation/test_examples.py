@@ -10,7 +10,7 @@ from tests.validation.laboratory import diagnose
 @pytest.mark.skipif(not examples.TRUTH, reason="no ../shared/blind-examples beside the checkout")
 @pytest.mark.parametrize("name", examples.QUICK)
 def test_an_example_comes_out_right(name, tmp_path):
-    examples.comes_out_right(name, tmp_path)
+    examples.comes_out_right(name, tmp_path, examples.CANDIDATES)
 
 
 @pytest.mark.acceptance
@@ -18,7 +18,7 @@ def test_an_example_comes_out_right(name, tmp_path):
 def test_a_pair_with_a_local_minimum_is_named(tmp_path):
     """The search for pairs once got it wrong."""
     file = examples.HARD_EXAMPLES / "pair-126" / "measured.toml"
-    found = diagnose(file, tmp_path / "found", None, "--no-report")
+    found = diagnose(file, tmp_path / "found", examples.CANDIDATES, "--no-report")
     truth = examples.HARD_TRUTH["pair-126"]
     assert found.verdict == "named"
     assert found.causes == set(truth["truth"])
