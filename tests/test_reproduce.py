@@ -23,7 +23,7 @@ from reproduce.runs import Run, Runs, mirrored_columns, single
 from tests import fixture_reproduction
 from tests.fixture_reproduction import AMPLITUDES
 
-SETTLED = {"solver": {"settle_periods": 60}}
+SETTLED = {"solver": {"method": "event-driven", "settle_periods": 60}}
 BY_NUMBER = {claim.number: claim for claim in claims.CLAIMS}
 
 
@@ -182,6 +182,7 @@ def test_a_real_run_at_20_hz_has_plateaus_of_an_eighth(tmp_path):
         frequency_hz = 20.0
         amplitude_mm = [0.04, 0.045, 0.05]
         [solver]
+        method = "event-driven"
         settle_periods = 60
         """
     ds = running.Sweep(running.config.parse(small), tmp_path / "20.nc").run(n_jobs=1)

@@ -16,6 +16,7 @@ from wedgesweep.diagnose.steady import simulation
 from wedgesweep.diagnose.steady.harmonic_data import HarmonicData
 from wedgesweep.diagnose.steady.noise_psd import SmoothPSD
 from wedgesweep.diagnose.steady.spectra import Spectrum
+from wedgesweep.measured.measurement import Measurement, TestRecord
 from wedgesweep.solvers.periodic import at_rest
 
 FREQUENCIES = np.array([5.0, 8.0, 11.0, 20.0, 24.0, 32.0])
@@ -77,6 +78,17 @@ def drawn(
         np.full(stated.size, std if known else np.inf),
         uncertain or {},
     )
+
+
+def record(name, frequency, time, **more) -> TestRecord:
+    """A steady test of a made-up file: its frequency (Hz), times (s) and channels."""
+    absent = {"amplitude": None, "amplitude_std": 0.0, "displacement": None, "velocity": None}
+    return TestRecord(name, f"{name}.csv", frequency, time=time, **absent | more)
+
+
+def measurement(model, law, tests, columns, **more) -> Measurement:
+    """Records of tests beside a model (Config), as if read from files."""
+    return Measurement(None, "bench", model, law, {}, tuple(tests), False, columns, **more)
 
 
 def next_to_breakaway() -> HarmonicData:

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from tests.command import invoke
+from tests.diagnose.synthetic import measurement, record
 from wedgesweep import config, measured
 from wedgesweep.diagnose.diagnosis import diagnose
 from wedgesweep.diagnose.steady.from_measurement import harmonic_data
 from wedgesweep.diagnose.steady.harmonic_data import stated
-from wedgesweep.measured.measurement import Measurement, TestRecord
 
 M, C, K = 2.0, 6.0, 800.0
 MODEL = """
@@ -58,31 +58,13 @@ def frictionless(contact, quantity, channel, of):
         exact = (turns @ (harmonics * (1j * OMEGA) ** ORDER[name])).real
         return exact + NOISE * exact.std() * rng.normal(size=time.size)
 
-    test = TestRecord(
-        name="0",
-        file="0.csv",
-        frequency=FREQUENCY,
-        amplitude=None,
-        amplitude_std=0.0,
-        time=time,
-        displacement=None,
-        velocity=None,
-        input=sampled(given, quantity),
-    )
+    fed = sampled(given, quantity)
+    test = record("0", FREQUENCY, time, input=fed, **{channel: sampled(motion, channel)})
     columns = {
         channel: {"column": "y", "unit": "m", "of": of},
         "input": {"column": "u", "unit": "m", "quantity": quantity},
     }
-    return Measurement(
-        path=None,
-        title="",
-        model=model(contact, "force" if forced else "base"),
-        law="coulomb",
-        uncertain={},
-        tests=(replace(test, **{channel: sampled(motion, channel)}),),
-        derived_velocity=False,
-        columns=columns,
-    )
+    return measurement(model(contact, "force" if forced else "base"), "coulomb", [test], columns)
 
 
 @pytest.mark.few(4)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.special import chdtrc
 
+from tests.diagnose import synthetic
 from tests.diagnose.synthetic import MODEL, base_of
 from wedgesweep import config, excitation
 from wedgesweep.diagnose.diagnosis import diagnose
@@ -16,7 +17,6 @@ from wedgesweep.diagnose.steady import simulation
 from wedgesweep.diagnose.steady.from_measurement import harmonic_data
 from wedgesweep.diagnose.steady.harmonic_data import stated
 from wedgesweep.diagnose.steady.recorded_input import without_noise
-from wedgesweep.measured.measurement import Measurement, TestRecord
 from wedgesweep.measured.model import with_numbers
 from wedgesweep.solvers.periodic import at_rest
 
@@ -81,29 +81,9 @@ def measurement(
         for name, exact in channels.items():
             level = noise if name != "input" or input_noise is None else input_noise
             channels[name] = exact + level * exact.std() * rng.normal(size=exact.size)
-        empty = {"displacement": None, "velocity": None}
-        records.append(
-            TestRecord(
-                name=f"{i}",
-                file=f"{i}.csv",
-                frequency=f,
-                amplitude=None,
-                amplitude_std=0.0,
-                time=time,
-                model=own,
-                **(empty | channels),
-            )
-        )
-    return Measurement(
-        path=None,
-        title="bench",
-        model=config.parse(MODEL),
-        law=LAW,
-        uncertain={},
-        tests=tuple(records),
-        derived_velocity=False,
-        columns=columns | {"input": {"column": "u", "unit": "m", "quantity": quantity}},
-    )
+        records.append(synthetic.record(f"{i}", f, time, model=own, **channels))
+    columns = columns | {"input": {"column": "u", "unit": "m", "quantity": quantity}}
+    return synthetic.measurement(config.parse(MODEL), LAW, records, columns)
 
 
 def misfit(data, effects):

@@ -1,18 +1,15 @@
 """The size of a rig changes nothing in a diagnosis but its numbers, and costs no simulations."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
-from tests.diagnose.synthetic import MODEL, drawn, steady_test
+from tests.diagnose.synthetic import MODEL, drawn, measurement, record, steady_test
 from tests.scaling import BENCH_SIZE, FROUDE, HEAVIER, SIZES
 from wedgesweep import config
 from wedgesweep.diagnose import stages, verdict
 from wedgesweep.diagnose.search import Search
 from wedgesweep.diagnose.steady import simulation
 from wedgesweep.diagnose.steady.from_measurement import harmonic_data
-from wedgesweep.measured import Measurement, TestRecord
 
 # Rounding may end a fit an iteration earlier or later.
 MORE = 1.1
@@ -79,28 +76,12 @@ def measured(size, tone):
         time = np.arange(6000) * 5e-4
         signal = amplitude * np.sin(2.0 * np.pi * hertz * time) + 2e-5 * np.sin(2.0 * np.pi * tone * time)
         signal += 1e-5 * random.normal(size=time.size)
+        stated = {"amplitude": amplitude * size.length, "amplitude_std": 0.01}
+        scaled = time * size.time, signal * size.length
         records.append(
-            TestRecord(
-                name=f"{hertz:g} Hz",
-                file="",
-                frequency=hertz / size.time,
-                amplitude=amplitude * size.length,
-                amplitude_std=0.01,
-                time=time * size.time,
-                displacement=signal * size.length,
-                velocity=None,
-            )
+            record(f"{hertz:g} Hz", hertz / size.time, scaled[0], displacement=scaled[1], **stated)
         )
-    return Measurement(
-        path=Path("measured.toml"),
-        title="",
-        model=size.config(config.parse(MODEL)),
-        law="static-dynamic",
-        uncertain={},
-        tests=tuple(records),
-        derived_velocity=False,
-        columns={},
-    )
+    return measurement(size.config(config.parse(MODEL)), "static-dynamic", records, {})
 
 
 @pytest.mark.few(1)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tests.diagnose.synthetic import MODEL as BENCH
-from tests.diagnose.synthetic import drawn
+from tests.diagnose.synthetic import drawn, measurement, record
 from tests.diagnose.test_oscillator_data import FREQUENCY, C, K, M, model
 from wedgesweep import config
 from wedgesweep.diagnose import verdict
@@ -19,7 +19,6 @@ from wedgesweep.diagnose.steady.from_measurement import harmonic_data
 from wedgesweep.diagnose.steady.harmonic_data import stated
 from wedgesweep.diagnose.steady.stated_input import distorted as with_harmonic
 from wedgesweep.diagnose.steady.whitened import real
-from wedgesweep.measured.measurement import Measurement, TestRecord
 
 STD, AMPLITUDE, NOISE = 0.004, 1e-3, 1e-4
 FREQUENCIES = np.array([FREQUENCY, 1.6 * FREQUENCY, 0.4 * FREQUENCY])
@@ -47,29 +46,10 @@ def frictionless(seed=0, std=STD, distorted=False, noise=NOISE, velocity=True, c
         turns = np.exp(1j * np.outer(time + rng.uniform(0.0, 1.0 / frequency), omega))
         exact = np.array([(turns @ (motion * rate)).real for rate in (1.0, 1j * omega)])
         exact += noise * exact.std(axis=1, keepdims=True) * rng.normal(size=exact.shape)
-        tests.append(
-            TestRecord(
-                name=f"{frequency:g}",
-                file=f"{frequency:g}.csv",
-                frequency=frequency,
-                amplitude=AMPLITUDE,
-                amplitude_std=0.0,
-                time=time,
-                displacement=exact[0],
-                velocity=exact[1] if velocity else None,
-            )
-        )
-    return Measurement(
-        path=None,
-        title="",
-        model=model("base", "base"),
-        law="coulomb",
-        uncertain={},
-        tests=tuple(tests),
-        derived_velocity=False,
-        columns={"displacement": {"column": "y", "unit": "m"}},
-        input_harmonics_std=std,
-    )
+        channels = {"displacement": exact[0], "velocity": exact[1] if velocity else None}
+        tests.append(record(f"{frequency:g}", frequency, time, amplitude=AMPLITUDE, **channels))
+    columns = {"displacement": {"column": "y", "unit": "m"}}
+    return measurement(model("base", "base"), "coulomb", tests, columns, input_harmonics_std=std)
 
 
 def closed_form(data):
@@ -92,8 +72,8 @@ def closed_form(data):
 @pytest.mark.parametrize("model_error", [0.0, 0.01])
 def test_the_covariance_is_that_of_the_transfer_function(velocity, model_error):
     """A linear system passes each harmonic on by itself, whatever the start phase of a record."""
-    measurement = frictionless(velocity=velocity)
-    data = harmonic_data(replace(measurement, model_error=model_error))
+    given = frictionless(velocity=velocity)
+    data = harmonic_data(replace(given, model_error=model_error))
     expected = closed_form(data)
     assert expected.max() > (1e3 if model_error == 0.0 else 3.0)
     np.testing.assert_allclose(data.covariance(stated(data)), expected, atol=1e-5 * expected.max())

@@ -20,21 +20,24 @@ here = pytest.mark.skipif(not DATA.is_dir(), reason="the recordings are not here
 
 @pytest.mark.acceptance
 @here
-@here
-@pytest.mark.acceptance
 def test_wall_friction_leads_and_predicts_the_other_recording(tmp_path):
-    for grams, found in real_frame.run(DATA, tmp_path).items():
-        linear, (accuracy, _) = found.linear, found.predicted
+    real_frame.copy(DATA, tmp_path)
+    discs, place = real_frame.DISCS, (tmp_path, real_frame.AS_RECORDED)
+    found = {grams: real_frame.linear(*place, grams) for grams in discs}
+    for grams, other in (discs, discs[::-1]):
+        linear = found[grams]
         assert linear.leading == "guide_friction"
         assert linear.force == pytest.approx(PUBLISHED[grams], rel=0.03)
         # Late channels turn phases, as friction does, but leave the amplitudes of harmonics.
         assert linear.next_best == "channel_delay" or grams != 250
         assert linear.leading_accuracy < linear.next_accuracy / verdict.CLEAR
         # The other recording, scaled by the weights of the discs, says as much as this one.
+        foreseen = real_frame.Frame(friction=found[other].force).under(grams / other)
+        accuracy, _ = real_frame.evaluated(tmp_path, foreseen, real_frame.AS_RECORDED, grams)
         assert accuracy < 1.15 * linear.leading_accuracy
-        friction, with_damping = ASKED[grams]
-        assert round(found.rubbing.friction.accuracy, 3) <= friction
-        assert round(found.rubbing.with_damping.accuracy, 3) <= with_damping
+        rubbing, (friction, with_damping) = real_frame.rubbing(*place, grams, linear.force), ASKED[grams]
+        assert round(rubbing.friction.accuracy, 3) <= friction
+        assert round(rubbing.with_damping.accuracy, 3) <= with_damping
 
 
 @pytest.mark.acceptance
