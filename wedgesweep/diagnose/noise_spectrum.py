@@ -125,21 +125,18 @@ class Choice(NamedTuple):
     """Which of the spectra that fit about as well is taken.
 
     White noise is, unless colour gains more than ``coloured`` in log-likelihood. Else, of all poles whose
-    log-likelihood is at most ``loss`` below the best one, that with most noise is taken, or that with the
-    ``least``. ``everywhere``: the other poles count as well, at frequencies where they have more noise.
-    Levels are raised to the upper end of their 95 % interval, unless ``loss`` is 0 or ``least`` is set.
+    log-likelihood is at most ``loss`` below the best one, that with most noise is taken. ``everywhere``: the
+    other poles count as well, at frequencies where they have more noise. Levels are raised to the upper end
+    of their 95 % interval, unless ``loss`` is 0.
     """
 
     loss: float
-    least: bool = False
     coloured: float = COLOURED
     everywhere: bool = False
 
 
-# The maximum-likelihood spectrum, one that errs to the safe side, and both ends of a 95 % interval of the
-# pole.
-BEST_FIT, CONSERVATIVE = Choice(0.0), Choice(0.5)
-LEAST_NOISE, MOST_NOISE = Choice(2.0, least=True), Choice(2.0, everywhere=True)
+# The maximum-likelihood spectrum, one that errs to the safe side, and the upper end of a 95 % interval.
+BEST_FIT, CONSERVATIVE, MOST_NOISE = Choice(0.0), Choice(0.5), Choice(2.0, everywhere=True)
 
 
 def fit_spectra(tests: Sequence[Sequence[NoiseBins]], choice: Choice = MOST_NOISE) -> list[NoiseSpectrum]:
@@ -154,7 +151,7 @@ def fit_spectra(tests: Sequence[Sequence[NoiseBins]], choice: Choice = MOST_NOIS
     mean = (bands.bins * bands.power) @ member / bins
     bands = bands._replace(known=bands.known + member @ (1e-12 * mean + 1e-300))
     found = _fitted(bands, member, np.array([_at_first(each) for each in own]))
-    raised = 0.0 if choice.loss == 0.0 or choice.least else TWO_SIDED * np.sqrt(CORRELATED / bins)
+    raised = 0.0 if choice.loss == 0.0 else TWO_SIDED * np.sqrt(CORRELATED / bins)
     best, *others = (
         [found.spectrum(place, level) for level in found.level[place] * (1.0 + raised)]
         for place in _chosen(found, choice)
@@ -170,7 +167,7 @@ def _chosen(found: "_Fitted", choice: Choice) -> list[int]:
     mean_power = (found.red[:, None] * _shape(POLES[:, None], GRID) + found.white[:, None]).mean(axis=1)
     mean_power = mean_power * found.level[:, 0]
     good = np.flatnonzero(loss <= choice.loss)
-    good = good[np.argsort(mean_power[good] if choice.least else -mean_power[good])]
+    good = good[np.argsort(-mean_power[good])]
     return [int(place) for place in (good if choice.everywhere else good[:1])]
 
 

@@ -18,7 +18,6 @@ from wedgesweep.diagnose.noise_bins import OwnNoise, noise_bins, quiet_bins
 from wedgesweep.diagnose.noise_spectrum import (
     BEST_FIT,
     FROM_REPEATS,
-    LEAST_NOISE,
     MOST_NOISE,
     Choice,
     NoiseBins,
@@ -122,16 +121,13 @@ class NoiseEvidence:
 
     @property
     def most(self) -> Spectra:
-        """The most noise of all channels: the most of one goes with the least of the others."""
+        """The most noise of each channel that its records allow beside the best fit of the others."""
         own = [{key: each for key, each in self.own.items() if key[1] == order} for order in self.of]
-        most: Spectra = {}
+        best: Spectra = {}
         for _ in range(1 + ROUNDS):
             for each in own:
-                most |= self.fitted(each, most, BEST_FIT)
-        for _ in range(ROUNDS):
-            least = {key: one for each in own for key, one in self.fitted(each, most, LEAST_NOISE).items()}
-            most = {key: one for each in own for key, one in self.fitted(each, least, MOST_NOISE).items()}
-        return most
+                best |= self.fitted(each, best, BEST_FIT)
+        return {key: one for each in own for key, one in self.fitted(each, best, MOST_NOISE).items()}
 
 
 def _near_the_motion(tests: Sequence[Sequence[NoiseBins]], own: Iterable[OwnNoise]) -> bool:
