@@ -20,7 +20,7 @@ from wedgesweep.diagnose.noise_spectrum import (
 )
 
 # A bin with this many times the power of the noise is part of a line, as are this many neighbours on either
-# side. Noise and lines are estimated in turn, in this many rounds.
+# side. What depends on one another, as noise and lines, is estimated in turn, in ROUNDS.
 STANDS_OUT, NEIGHBOURS, ROUNDS = 8.0, 2, 4
 # A line above the motion counts as part of it if its power is this many times the noise.
 LINE = 30.0

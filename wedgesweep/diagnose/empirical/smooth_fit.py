@@ -15,6 +15,7 @@ import numpy as np
 
 from wedgesweep.diagnose.empirical.hypothesis import EmpiricalHypothesis
 from wedgesweep.diagnose.evaluation import Evaluation
+from wedgesweep.diagnose.least_squares import CONVERGED_SHARE
 from wedgesweep.diagnose.model import Fit, Model
 from wedgesweep.diagnose.normal_equations import NormalEquations, normal_equations
 from wedgesweep.effects.empirical_force import PLACES, SPEEDS
@@ -27,8 +28,6 @@ FIRST, ENDS = (-2, -2), (-7, 3)
 RIDGE = 1e-9
 # Gauss-Newton steps of a fit, and shares of a step that are tried.
 ROUNDS, SHARES = 3, (1.0, 0.5, 0.2, 0.05)
-# A fit has converged when a step gains less than this share of its chi-squared.
-CONVERGED = 1e-3
 
 
 @dataclass(frozen=True)
@@ -88,7 +87,7 @@ def fit(model: Model, start: Evaluation, groups: Sequence[np.ndarray]) -> Smooth
             break
         gained = _objective(here, here.evaluation) - _objective(here, better)
         here = _around(model, better, groups)
-        if gained < CONVERGED * here.evaluation.chi2:
+        if gained < CONVERGED_SHARE * here.evaluation.chi2:
             break
     return here
 

@@ -7,14 +7,17 @@ the spectrum is that of both.
 """
 
 from dataclasses import replace
-from typing import NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from wedgesweep.diagnose.loop import motion_noise
 from wedgesweep.diagnose.noise_spectrum import NoiseSpectrum, of_noise
-from wedgesweep.diagnose.smoothing import LowPass, Motion
+from wedgesweep.diagnose.smoothing import Motion
 from wedgesweep.solvers.imposed_motion import reversals, share_jumps
+
+if TYPE_CHECKING:
+    from wedgesweep.diagnose.loop.recording import Recording
 
 FROM_MOTION = "what no smooth function of the motion explains"
 # Knots over the displacement and over the velocity, and distances since a reversal over which friction may
@@ -28,48 +31,25 @@ SAMPLES_PER_FUNCTION = 4
 NEAR = 4.0
 
 
-class KnownNoise(NamedTuple):
-    """Noise of compared forces that is known from elsewhere.
-
-    ``passed_on`` (L, k): covariance that comes from noise of the motion; ``white`` (N): standard deviation of
-    white noise, which frequencies above the filter show; ``counted`` (k,): samples that count.
-    """
-
-    passed_on: np.ndarray
-    white: float
-    counted: np.ndarray
-
-    @property
-    def clear(self) -> np.ndarray:
-        """Samples (k,) that are far enough from reversals."""
-        variance = self.passed_on[0] + self.white**2
-        return self.counted & (variance <= NEAR * np.median(variance[self.counted]))
-
-
-def of_force(
-    motion: Motion,
-    low_pass: LowPass,
-    model: np.ndarray,
-    force: np.ndarray,
-    places: np.ndarray,
-    known: KnownNoise,
-) -> NoiseSpectrum:
-    """The noise of a filtered force (k,) at some places (k,) of a motion, but for what the motion's adds.
+def of_force(own: "Recording", model: np.ndarray) -> NoiseSpectrum:
+    """The noise of the compared force of a test, but for what noise of its motion has passed on.
 
     ``model`` (n,): the force of a model along the motion.
     """
-    clear = known.clear
-    columns = low_pass(_functions(motion, model))[:, places].T
-    whole = np.zeros(force.size)
-    whole[clear] = _left(columns[clear], force[clear])
+    assert own.passed_on is not None
+    variance = own.passed_on[0] + own.white**2
+    clear = own.known & (variance <= NEAR * np.median(variance[own.known]))
+    columns = own.low_pass(_functions(own.motion, model))[:, own.places].T
+    whole = np.zeros(own.force.size)
+    whole[clear] = _left(columns[clear], own.force[clear])
     # Samples that are left out carry their share of the power.
-    share = float(clear.mean())
+    share, passed_on = float(clear.mean()), own.passed_on
 
     def power(frequency: np.ndarray) -> np.ndarray:
-        return motion_noise.power(known.passed_on, clear, frequency) + known.white**2
+        return motion_noise.power(passed_on, clear, frequency) + own.white**2
 
     found = of_noise([whole / np.sqrt(share)], FROM_MOTION, power)
-    return replace(found, white=found.white + known.white**2)
+    return replace(found, white=found.white + own.white**2)
 
 
 def _left(columns: np.ndarray, force: np.ndarray) -> np.ndarray:

@@ -15,7 +15,7 @@ from wedgesweep.config import Config
 from wedgesweep.diagnose.decorrelation import Decorrelation, decorrelation
 from wedgesweep.diagnose.fit_parameters import Values
 from wedgesweep.diagnose.loop import motion_noise
-from wedgesweep.diagnose.loop.force_noise import KnownNoise, of_force
+from wedgesweep.diagnose.loop.force_noise import of_force
 from wedgesweep.diagnose.loop.motion_noise import Derivatives
 from wedgesweep.diagnose.noise_spectrum import FROM_REPEATS, NoiseSpectrum, of_noise
 from wedgesweep.diagnose.sampled_data import MOST_BLOCKS
@@ -118,15 +118,10 @@ class Recording:
         ``zeros`` (blocks,): what to add to the displacement (m) in each block.
         """
         found = self.with_noise_of_motion(values, zeros)
-        assert found.passed_on is not None
         if self.differences:
             return replace(found, spectrum=of_noise(self.differences, FROM_REPEATS))
         model = np.nan_to_num(self._forces([values], zeros[None], self.motion.parts)[0])
-        known = KnownNoise(found.passed_on, self.white, self.known)
-        return replace(
-            found,
-            spectrum=of_force(self.motion, self.low_pass, model, self.force, self.places, known),
-        )
+        return replace(found, spectrum=of_force(found, model))
 
     def with_noise_of_motion(self, values: Values, zeros: np.ndarray) -> Self:
         """The test with the errors of the force of a scenario: by noise of the motion, and by its start."""

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.ndimage import minimum_filter1d
 
+from wedgesweep.diagnose.changes import SLIGHT
 from wedgesweep.diagnose.fit_data import FitData
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.next_test.designs import Design, Offer, offered
@@ -21,8 +22,8 @@ from wedgesweep.diagnose.next_test.transients import releases, sweeps
 from wedgesweep.diagnose.transient.transient_data import RELEASE, SWEEP
 from wedgesweep.measured.declarations import LOOP, STEADY, TRANSIENT
 
-# Squared distance at which two explanations are separated, and below which they do not differ visibly.
-SEPARATED, UNSEEN = 30.0, 1.0
+# Squared distance at which two explanations are separated; up to SLIGHT they do not differ visibly.
+SEPARATED = 30.0
 # Tests that are looked at closely, if explanations adapt to those before.
 TRIED = 5
 # Tests to choose from by the best fit, its sensors and the measured tests of that kind, with their kind; what
@@ -113,7 +114,7 @@ def _like(name: str, fits: Sequence[Fit], parts: Sequence[FitData]) -> NextTest 
 def recommended(design: Design, fits: Sequence[Fit]) -> NextTest | None:
     """The test of a design that separates most fits, the best one first; None where none differ visibly."""
     offer = offered(design, fits)
-    if not (offer.distances > UNSEEN).any():
+    if not (offer.distances > SLIGHT).any():
         return None
     chosen, distances = _confirmed(offer)
     names = combinations([" + ".join(fit.effects) or "base" for fit in offer.fits], 2)

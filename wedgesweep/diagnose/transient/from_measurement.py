@@ -3,6 +3,7 @@
 import numpy as np
 
 from wedgesweep.diagnose.channel_factors import channel_factors
+from wedgesweep.diagnose.noise_bins import PARTS
 from wedgesweep.diagnose.noise_spectrum import NoiseSpectrum
 from wedgesweep.diagnose.transient.cutting import FEWEST, Recorded, windows
 from wedgesweep.diagnose.transient.noise import Channels, Spectra, from_repeats, noise_of_channels
@@ -13,8 +14,6 @@ from wedgesweep.errors import InputError
 from wedgesweep.measured import Measurement, TestRecord
 from wedgesweep.measured.declarations import MOTIONS
 
-# Parts of a record, in the loudest of which its motion must be larger than its noise.
-PARTS = 8
 # Windows that are compared: more of them take time, and tell little that is new.
 MOST_WINDOWS = 40
 
@@ -69,7 +68,7 @@ def _noise(measurement: Measurement, channels: list[Channels]) -> Spectra:
 
 
 def _refuse_noise(channels: Channels, spectra: dict[int, NoiseSpectrum]) -> None:
-    """Raise InputError if the motion is smaller than the noise of all channels, where it is largest."""
+    """Raise InputError if the motion is smaller than the noise of all channels in the loudest part."""
     shares = []
     for order, samples in channels.items():
         largest, std = max(part.std() for part in np.array_split(samples, PARTS)), spectra[order].std

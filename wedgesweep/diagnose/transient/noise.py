@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from wedgesweep.diagnose import repeats
-from wedgesweep.diagnose.noise_bins import OwnNoise, noise_bins, quiet_bins
+from wedgesweep.diagnose.noise_bins import FEWEST, ROUNDS, OwnNoise, noise_bins, quiet_bins
 from wedgesweep.diagnose.noise_spectrum import (
     BEST_FIT,
     FROM_REPEATS,
@@ -28,17 +28,16 @@ from wedgesweep.diagnose.noise_spectrum import (
 from wedgesweep.diagnose.smoothing import unlike_steps
 from wedgesweep.diagnose.transient.channel_differences import Difference, differences
 from wedgesweep.measured import TestRecord
+from wedgesweep.measured.declarations import MOTIONS
 
 # Steps around one that tell the usual size of a step.
 AROUND = 9
 # Order of an acceleration, whose jumps are no noise: derivative of the displacement.
-ACCELERATION = 2
+ACCELERATION = MOTIONS.index("acceleration")
 # Sampling rates that differ by less than this are the same.
 SAME_RATE = 1e-3
 # Bins reach down to the motion if at least FEWEST of them lie below NEAR times its frequency.
-NEAR, FEWEST = 4.0, 8
-# Rounds in which the noise of each channel is estimated from that of the others.
-ROUNDS = 3
+NEAR = 4.0
 
 # Channels (n,) of a test, by the order of the derivative of the displacement that each is.
 Channels = Mapping[int, np.ndarray]
@@ -124,7 +123,7 @@ class NoiseEvidence:
         """The most noise of each channel that its records allow beside the best fit of the others."""
         own = [{key: each for key, each in self.own.items() if key[1] == order} for order in self.of]
         best: Spectra = {}
-        for _ in range(1 + ROUNDS):
+        for _ in range(ROUNDS):
             for each in own:
                 best |= self.fitted(each, best, BEST_FIT)
         return {key: one for each in own for key, one in self.fitted(each, best, MOST_NOISE).items()}
