@@ -23,12 +23,7 @@ def loop_data(measurement: Measurement) -> LoopData:
 
 
 def _recording(measurement: Measurement, test: TestRecord, differences: list[np.ndarray]) -> Recording:
-    assert test.displacement is not None
-    assert test.force is not None
-    model = measurement.model_of(test)
-    signals = test.displacement, test.force
-    given = test.name, model, measurement.law, test.sampling_rate, signals, test.cutoff, differences
     try:
-        return recording(*given)
+        return recording(test, measurement.model_of(test), measurement.law, differences)
     except InputError as error:
         raise InputError([f"{test.file}: {problem}" for problem in error.problems]) from error

@@ -22,6 +22,7 @@ from wedgesweep.diagnose.sampled_data import MOST_BLOCKS
 from wedgesweep.diagnose.smoothing import LowPass, Motion, chosen_cutoff, motion, white_noise
 from wedgesweep.effects import channel_delay, force_gain, merge
 from wedgesweep.errors import InputError
+from wedgesweep.measured import TestRecord
 from wedgesweep.solvers import imposed_motion
 
 # Below AT_REST standard deviations of its noise the velocity has no sign. Where it stays there for more than
@@ -209,40 +210,21 @@ class Recording:
         return found
 
 
-def recording(
-    name: str,
-    model: Config,
-    law: str,
-    rate: float,
-    samples: tuple[np.ndarray, np.ndarray],
-    cutoff: float | None,
-    differences: Sequence[np.ndarray] = (),
-) -> Recording:
-    """Prepare a test.
+def recording(test: TestRecord, model: Config, law: str, differences: Sequence[np.ndarray] = ()) -> Recording:
+    """Prepare a test, whose filter is as high as the noise of the displacement allows, unless it is stated.
 
-    Parameters
-    ----------
-    name, model, law
-        See ``Recording``.
-    rate : float
-        Sampling rate (Hz).
-    samples : tuple of ndarray, shape (n,) each
-        Displacement (m) and force (N).
-    cutoff : float, optional
-        Cut-off frequency (Hz); by default as high as the noise of the displacement allows.
-    differences : sequence of ndarray
-        What repeats of the test leave of its force (N), which is noise; without them it is what no smooth
-        function of the motion explains.
-
-    Raises
-    ------
-    InputError
-        For a record that is too short, hardly moves, or is nothing but noise.
+    ``differences``: what repeats of the test leave of its force (N), which is noise; without them it is what
+    no smooth function of the motion explains. Raises InputError for a record that is too short, hardly moves,
+    or is nothing but noise.
     """
-    displacement, force = samples
+    assert test.displacement is not None
+    assert test.force is not None
+    displacement, force, rate = test.displacement, test.force, test.sampling_rate
     mass = moving_mass(model, law)
     noise = white_noise(displacement, rate)
-    low_pass = LowPass(cutoff or chosen_cutoff(displacement, noise, float(force.std()), mass, rate), rate)
+    low_pass = LowPass(
+        test.cutoff or chosen_cutoff(displacement, noise, float(force.std()), mass, rate), rate
+    )
     ends = low_pass.settling
     places = np.arange(ends, displacement.size - ends, low_pass.stride)
     if not places.size:
@@ -256,7 +238,9 @@ def recording(
     blocks = _blocks(own.velocity[places])
     white = low_pass.noise(white_noise(force, rate, jumps=True))
     left = tuple(low_pass(each)[ends : -ends : low_pass.stride] for each in differences)
-    found = Recording(name, model, law, low_pass, own, noise, places, compared, known, blocks, white, left)
+    found = Recording(
+        test.name, model, law, low_pass, own, noise, places, compared, known, blocks, white, left
+    )
     found = found.renewed({}, np.zeros(len(blocks)))
     if found.noise_share > 1.0:
         problem = f"its noise is {100.0 * found.noise_share:.0f} % of the force, so that it shows nothing"
