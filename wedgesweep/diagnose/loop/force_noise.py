@@ -29,6 +29,9 @@ DEPENDENT = 1e-6
 SAMPLES_PER_FUNCTION = 4
 # Variance by noise of the motion, over its median, beyond which a force is too near a reversal.
 NEAR = 4.0
+# Compared samples to either side of a reversal that are left out as well, as friction may build up there as
+# no function does (a carriage on a screw would have 6 % more noise), and the share that must be left then.
+FARTHER, ENOUGH_LEFT = 4, 0.5
 
 
 def of_force(own: "Recording", model: np.ndarray) -> NoiseSpectrum:
@@ -37,8 +40,7 @@ def of_force(own: "Recording", model: np.ndarray) -> NoiseSpectrum:
     ``model`` (n,): the force of a model along the motion.
     """
     assert own.passed_on is not None
-    variance = own.passed_on[0] + own.white**2
-    clear = own.known & (variance <= NEAR * np.median(variance[own.known]))
+    clear = _clear(own, own.passed_on[0] + own.white**2)
     columns = own.low_pass(_functions(own.motion, model))[:, own.places].T
     whole = np.zeros(own.force.size)
     whole[clear] = _left(columns[clear], own.force[clear])
@@ -50,6 +52,14 @@ def of_force(own: "Recording", model: np.ndarray) -> NoiseSpectrum:
 
     found = of_noise([whole / np.sqrt(share)], FROM_MOTION, power)
     return replace(found, white=found.white + own.white**2)
+
+
+def _clear(own: "Recording", variance: np.ndarray) -> np.ndarray:
+    """Samples (k,), of some variance (k,), that are far from reversals, unless few are left then."""
+    quiet = own.known & (variance <= NEAR * np.median(variance[own.known]))
+    turns = np.diff(np.sign(own.motion.velocity[own.places]), append=0.0) != 0.0
+    far = quiet & (np.convolve(turns, np.ones(2 * FARTHER + 1), mode="same") < 0.5)
+    return far if far.sum() >= ENOUGH_LEFT * quiet.sum() else quiet
 
 
 def _left(columns: np.ndarray, force: np.ndarray) -> np.ndarray:
