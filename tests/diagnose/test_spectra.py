@@ -99,7 +99,7 @@ def test_lines_of_one_response_alone_neither_hide_a_tone_nor_are_one():
 
 @pytest.mark.acceptance
 def test_the_frequency_of_a_tone_is_as_uncertain_as_it_says():
-    found = [tone.find(spectra_with(np.random.default_rng(seed), 0.05)) for seed in range(30)]
+    found = [tone.find(spectra_with(np.random.default_rng(seed), 0.05)) for seed in range(16)]
     pulls = np.array([(each.frequency - 47.3) / each.std for each in found])
     assert 0.7 < np.sqrt((pulls**2).mean()) < 1.4
 

@@ -19,7 +19,7 @@ beta = [0.4, 1.1]
 amplitude_mm = [0.7, 1.0]
 """
 SOLVERS = {
-    "fixed": 'method = "event-driven"\nrtol = 1e-6\nsettle_periods = 5\n',
+    "fixed": 'method = "event-driven"\nrtol = 1e-6\nsettle_periods = 2\n',
     "steady": 'method = "event-driven"\nsettle = "steady"\n',
     "continuation": 'method = "event-driven"\nsettle = "steady"\ncontinuation = true\n',
     "radau": "settle_periods = 4\n",
