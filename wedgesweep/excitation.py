@@ -73,6 +73,29 @@ def has_series(rows: np.ndarray) -> np.ndarray:
     return (rows["series"]["count"] > 1) | is_sampled(rows)
 
 
+@term("series", off="True")
+def is_sine(p):
+    """Whether the input is a sine, or none."""
+    if p.series.rows > 0:
+        return False
+    for order in range(1, p.series.count):
+        if p.series.cosine[order] != 0.0 or p.series.sine[order] != 0.0:
+            return False
+    return True
+
+
+@term("series", off="True")
+def is_sampled_or_sine(p):
+    """Whether the input is not a sum of harmonics."""
+    return p.series.rows > 0 or is_sine(p)
+
+
+@term("input_gain", off="p.input.amplitude")
+def amplitude(p):
+    """Amplitude of a sine (m or N), which the samples of other inputs are multiples of."""
+    return p.input_gain.scale * p.input.amplitude
+
+
 @inlined
 def _turned(turn, by):
     """Cosine and sine of the sum of two angles, both given by theirs."""

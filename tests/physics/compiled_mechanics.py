@@ -8,17 +8,17 @@ from inspect import signature
 import numpy as np
 
 from wedgesweep import friction
-from wedgesweep.compiled import compiled, function_of
+from wedgesweep.compiled import borrowed, compiled, function_of
 from wedgesweep.effects import states
+from wedgesweep.hybrid import linear_modes
 from wedgesweep.hybrid.accumulators import empty
 from wedgesweep.hybrid.recorder import Recorder
 from wedgesweep.hybrid.state import NO_EVENT, State
 from wedgesweep.hybrid.step import dense_output
 from wedgesweep.solvers import explicit, implicit, period_detection
+from wedgesweep.solvers.integrate import workspace
 from wedgesweep.systems.suspension import (
     filippov,
-    linear_events,
-    linear_slip,
     newton,
     parameters,
     set_valued,
@@ -62,6 +62,7 @@ def exposed(inner):
 
 initial_mode = exposed(transitions.initial_mode)
 rate = exposed(transitions.rate)
+transition = exposed(transitions.transition)
 resolve_mode = exposed(filippov.resolve_mode)
 contact_forces = exposed(filippov.forces_of_mode)
 reactions = exposed(newton.reactions)
@@ -93,11 +94,11 @@ def implicit_step(t, h, y, mode, p, rtol):
 
 
 @compiled
-def _slid(t, stop, y, mode, p, recorder):
-    oscillator = linear_slip.linear_oscillator(y, mode, p)
-    state = State(t, y, mode, NO_EVENT, 0.0)
-    end, event = linear_events.follow_linear(state, stop, oscillator, p, False, recorder)
-    return oscillator, end.t, event
+def _slid(t, stop, y, mode, p, recorder, work):
+    _, end, event = linear_modes.follow_linear(
+        State(t, y, mode, NO_EVENT, 0.0), stop, p, False, recorder, borrowed(work)
+    )
+    return end.t, end.y, event
 
 
 NOTHING_RECORDED = Recorder(
@@ -107,5 +108,5 @@ NOTHING_RECORDED = Recorder(
 
 
 def slid(t, stop, y, mode, p):
-    """Oscillator of a mode, and where it ends: time and event."""
-    return _slid(t, stop, y, mode, p, NOTHING_RECORDED)
+    """Where a linear mode ends: time, state and event."""
+    return _slid(t, stop, y, mode, p, NOTHING_RECORDED, workspace(1e-6))

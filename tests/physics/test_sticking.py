@@ -56,14 +56,18 @@ def test_a_range_without_zero_is_left_before_the_samples_begin_and_after_they_en
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
-@pytest.mark.parametrize("locked_in", [0.0, pytest.param(0.3, marks=pytest.mark.acceptance)])
-def test_a_bolster_breaks_away_when_a_growing_acceleration_reaches_that_of_breakaway(sign, locked_in):
+@pytest.mark.parametrize(
+    ("locked_in", "gain"),
+    [(0.0, 1.0), *(pytest.param(*each, marks=pytest.mark.acceptance) for each in ((0.3, 1.0), (0.0, 1.25)))],
+)
+def test_a_bolster_breaks_away_when_a_growing_acceleration_reaches_that_of_breakaway(sign, locked_in, gain):
     growth, span, samples = 1.0, 1.0, 200_000
     time = np.arange(2001) * 5e-4
     begin = 0.1
     given = from_samples(sign * (begin + growth * time), 5e-4, "acceleration")
-    row = _record(given, span, {"jamming": {"locked_in": locked_in}} if locked_in else {})
-    expected = (_breakaway(row, sign, locked_in) - begin) / growth
+    effects = {"jamming": {"locked_in": locked_in}, "input_gain": {"scale": gain}}
+    row = _record(given, span, effects)
+    expected = (_breakaway(row, sign, locked_in) / gain - begin) / growth
     assert 0.1 < expected < 0.9
     run = periodic.sampled(row, np.zeros((1, state_count())), 0, 1, samples, 1e-10)
     moves = np.flatnonzero(run.velocity[0] != 0.0)[0] / samples

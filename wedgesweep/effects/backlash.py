@@ -26,6 +26,7 @@ EFFECT = Effect(
     ),
     extends=("clearance",),
 )
+LINEAR = True
 
 
 @term("backlash", off="False")

@@ -23,6 +23,7 @@ EFFECT = Effect(
     ),
     extends=("asymmetry",),
 )
+LINEAR = True
 
 
 @term("directional_friction", off="False")

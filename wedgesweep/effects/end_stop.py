@@ -42,6 +42,7 @@ EFFECT = Effect(
     ),
     extends=("stiffness",),
 )
+LINEAR = True
 
 
 @term("end_stop", off="False")

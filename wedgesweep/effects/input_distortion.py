@@ -5,7 +5,7 @@ Neutral and default: second = third = 0; both phases 0.
 
 from math import cos, sin
 
-from wedgesweep.compiled import inlined
+from wedgesweep.compiled import inlined, term
 from wedgesweep.effects.base import EXPERIMENTAL, Effect
 from wedgesweep.quantity import Quantity
 
@@ -29,6 +29,12 @@ EFFECT = Effect(
         "third",
     ),
 )
+
+
+@term("input_distortion", off="False")
+def acts(p):
+    """Whether the input has further harmonics."""
+    return p.input_distortion.second != 0.0 or p.input_distortion.third != 0.0
 
 
 @inlined

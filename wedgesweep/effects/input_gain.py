@@ -17,6 +17,7 @@ EFFECT = Effect(
     quantities=(Quantity("scale", 1.0, "what acts over what was recorded", above=0.0, search=(0.5, 2.0)),),
     extends=("scale",),
 )
+LINEAR = True
 
 
 @inlined

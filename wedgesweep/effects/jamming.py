@@ -41,3 +41,4 @@ EFFECT = Effect(
         "lift_off",
     ),
 )
+LINEAR = True

@@ -19,6 +19,7 @@ EFFECT = Effect(
     ),
     extends=("coefficient",),
 )
+LINEAR = True
 
 
 @inlined

@@ -211,6 +211,15 @@ def follow(state, stop, p, keeping, recorder, work):
     return False, state, NO_EVENT
 
 
+@optional
+def linear(mode, p):
+    """Whether a mode is linear (hybrid/linear_modes.py): rates and events in displacement and velocity.
+
+    All other states rest, and the input is a sine or none.
+    """
+    return False
+
+
 # Imposed motions (solvers/imposed_motion.py), whose states of effects follow the motion.
 
 

@@ -25,6 +25,7 @@ from wedgesweep.hybrid.interface import (
     holds,
     initial_mode,
     leaves,
+    linear,
     never_locks,
     opened,
     outruns,
@@ -35,6 +36,7 @@ from wedgesweep.hybrid.interface import (
     transition,
     well_posed,
 )
+from wedgesweep.hybrid.linear_modes import Equations, follow_linear, forget, room
 from wedgesweep.hybrid.recorded_step import record_step
 from wedgesweep.hybrid.search import Bracket, minimum, searched, zero, zero_after_start
 from wedgesweep.hybrid.state import CHATTERING, FAILED, HANDED_OVER, LOCKED, NO_EVENT, OK, State
@@ -69,9 +71,10 @@ PAST_EXPECTED, LEAST_SHARE, NEAR_END = 0.15, 0.02, 0.75
 
 
 class Workspace(NamedTuple):
-    """Tolerance of a run, counts of its rate evaluations, steps and events, and room for event functions.
+    """Tolerance of a run, counts of its rate evaluations, steps and events, and working space.
 
-    ``counts`` has shape (3,); the event functions at places of a step have shape (MOST_EVENTS,).
+    ``counts`` has shape (3,); the event functions at places of a step have shape (MOST_EVENTS,);
+    ``equations``: of linear modes.
     """
 
     rtol: float
@@ -80,11 +83,13 @@ class Workspace(NamedTuple):
     at_middle: Any
     at_end: Any
     at_point: Any
+    equations: Equations
 
 
 def workspace(rtol: float) -> Workspace:
     """A fresh Workspace."""
-    return Workspace(rtol, np.zeros(3, np.int64), *(np.full(MOST_EVENTS, inf) for _ in range(4)))
+    start, middle, end, point = np.full((4, MOST_EVENTS), inf)
+    return Workspace(rtol, np.zeros(3, np.int64), start, middle, end, point, room())
 
 
 class _EventFunction(NamedTuple):
@@ -286,12 +291,15 @@ def integrate(state, keep_from, stop, p, recorder, work):
     if periods > LONGEST_WINDOW:
         return FAILED, state
     limit = work.counts[2] + EVENTS_PER_PERIOD * (1.0 + periods)
+    forget(work.equations)
     while state.t < stop:
         if leaves(state.y, state.mode, p):
             return HANDED_OVER, state
         keeping = state.t >= keep_from
         end = stop if keeping else keep_from
         done, state, number = follow(state, end, p, keeping, recorder, work)
+        if not done and linear(state.mode, p):
+            done, state, number = follow_linear(state, end, p, keeping, recorder, work)
         if not done:
             state, number = _integrate_mode(state, end, p, keeping, recorder, work)
         if number == NO_EVENT and work.counts[2] <= limit:

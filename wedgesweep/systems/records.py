@@ -94,6 +94,11 @@ def acting(p: np.void, names: Iterable[str]) -> list[str]:
     ]
 
 
+def is_linear(name: str) -> bool:
+    """Whether an effect adds but forces that are linear in displacement and velocity while a mode holds."""
+    return getattr(known.REGISTERED[name], "LINEAR", False)
+
+
 def stacked(some: Sequence[np.ndarray]) -> np.ndarray:
     """Records of one type, one array after the other."""
     # numpy would compare the types part by part.

@@ -98,8 +98,10 @@ def _kits(names: tuple[str, ...], series: bool) -> tuple[np.dtype, np.dtype, np.
 
 
 def _dtype(parts: list[tuple], names: Iterable[str]) -> np.dtype:
-    # ``absolute``: the displacement is against the ground, not against the base.
-    own = [*((name, np.int64) for name in ("kit", "absolute", "forced")), ("belt_velocity", np.float64)]
+    # ``linear``: but for friction that depends on velocity; ``absolute``: the displacement is against the
+    # ground, not against the base.
+    numbers = [("belt_velocity", np.float64)]
+    own = [*((name, np.int64) for name in ("kit", "linear", "absolute", "forced")), *numbers]
     own += [(quantity.name, np.float64) for quantity in OSCILLATOR]
     effects = records.effect_parts(name for name in names if name not in ADJUSTED)
     return np.dtype([*parts, *effects, *records.COMMON, ("oscillator", own)])
@@ -161,6 +163,8 @@ def record(
     p[pendulum.NAME]["stiffness"] = own["spring"] if swings else 0.0
     acting = records.acting(p, parts)
     own["kit"] = 2 if OF_MANY_STATES in acting else bool(acting) or law == bristles.NAME or swings
+    plain_spring = law != bristles.NAME and not swings
+    own["linear"] = plain_spring and all(records.is_linear(name) for name in acting)
     if law == bristles.NAME:
         _set_bristles(p, oscillator)
     if p["presliding"]["length"] > 0.0 or p["series_compliance"]["stiffness"] > 0.0:

@@ -2,11 +2,10 @@
 
 from wedgesweep.compiled import inlined, inner
 from wedgesweep.hybrid import interface
-from wedgesweep.hybrid.interface import implement, leaves, transition
+from wedgesweep.hybrid.interface import implement, leaves, linear, transition
+from wedgesweep.hybrid.linear_modes import follow_linear
 from wedgesweep.hybrid.state import NO_EVENT, State
 from wedgesweep.systems.suspension.events import COLUMN_NORMAL
-from wedgesweep.systems.suspension.linear_events import follow_linear
-from wedgesweep.systems.suspension.linear_slip import constant_friction, linear_oscillator
 from wedgesweep.systems.suspension.modes import stuck
 from wedgesweep.systems.suspension.regularised_slip import equations_of, follow_series, has_series
 from wedgesweep.systems.suspension.sticking import follow_stuck
@@ -20,12 +19,9 @@ def _follow_mode(state, stop, equations, p, keeping, recorder, work):
     """As ``follow``, one mode."""
     mode = state.mode
     if stuck(mode, p):
-        return follow_stuck(state, stop, p, keeping, recorder)
-    if constant_friction(mode, p):
-        oscillator = linear_oscillator(state.y, mode, p)
-        if oscillator.linear:
-            state, event = follow_linear(state, stop, oscillator, p, keeping, recorder)
-            return True, state, event
+        return follow_stuck(state, stop, p, keeping, recorder, work)
+    if linear(mode, p):
+        return follow_linear(state, stop, p, keeping, recorder, work)
     if has_series(mode, p):
         return follow_series(state, stop, equations, p, keeping, recorder, work)
     return False, state, NO_EVENT

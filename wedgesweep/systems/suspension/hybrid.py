@@ -2,9 +2,9 @@
 
 from math import nan
 
-from wedgesweep import excitation
+from wedgesweep import excitation, friction
 from wedgesweep.compiled import inlined, inner
-from wedgesweep.effects import presliding, states
+from wedgesweep.effects import guide_friction, presliding, states
 from wedgesweep.hybrid import interface
 from wedgesweep.hybrid.interface import implement
 from wedgesweep.hybrid.vectors import replaced
@@ -53,6 +53,19 @@ def event_count(p):
 def never_locks(p):
     """See parameters.prepare."""
     return p.geometry.always_well_posed != 0
+
+
+@implement(interface.linear, SUSPENSION)
+@inlined
+def linear(mode, p):
+    """Whether a mode slips on all faces under friction that does not depend on velocity."""
+    if not (p.geometry.linear and excitation.is_sine(p)) or held(mode):
+        return False
+    if p.friction.set_valued:
+        return mode.column != 0
+    bolster = mode.bolster != 0 or p.geometry.bolster_ratio == 0.0
+    guide = mode.guide != 0 or not guide_friction.acts(p)
+    return friction.exponent(p) == 0.0 and mode.column != 0 and bolster and guide
 
 
 @implement(interface.free, SUSPENSION)

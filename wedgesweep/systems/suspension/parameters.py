@@ -114,6 +114,7 @@ def _dtype(marker: list[tuple], names: Iterable[str]) -> np.dtype:
         ("kit", np.int64),
         ("opens", np.int64),  # whether contacts may open
         ("always_well_posed", np.int64),
+        ("linear", np.int64),  # but for friction that depends on velocity
         ("each_face_well_posed", np.int64),  # with the other one open
         *((name, np.float64) for name in GEOMETRY),
     ]
@@ -260,6 +261,7 @@ def prepare(case: np.ndarray, acting: Sequence[str]) -> None:
     most = _largest_coefficient(case[0], acting)
     p["each_face_well_posed"] = _each_face_well_posed(most, case[0])
     p["always_well_posed"] = _always_well_posed(most, case[0], small)
+    p["linear"] = p["always_well_posed"] and all(records.is_linear(name) for name in acting)
 
 
 def _column_force_at_rest(p: np.void) -> float:

@@ -6,9 +6,9 @@ stay positive these are known, and so are the times at which a harmonic or a sam
 
 from math import asin, ceil, inf, pi
 
-from wedgesweep import sampled_input
+from wedgesweep import excitation, sampled_input
 from wedgesweep.compiled import inlined, inner, term
-from wedgesweep.effects import fixture_resonance, states, stray_vibration
+from wedgesweep.effects import fixture_resonance, input_distortion, states, stray_vibration
 from wedgesweep.hybrid.interface import follow, implement
 from wedgesweep.hybrid.recorder import record_constant
 from wedgesweep.hybrid.state import NO_EVENT, State
@@ -42,9 +42,9 @@ def carries_load_until_breakaway(y, segment, p):
 
 @inner
 def _breakaway_of_sine(forward, backward, t, stop, p):
-    """Time at which the base acceleration leaves a range (m/s^2), and the event (NO_EVENT at ``stop``)."""
+    """Time at which a harmonic base acceleration leaves a range (m/s^2), and the event (NO_EVENT: none)."""
     omega = p.input.omega
-    most = p.input.amplitude * omega**2
+    most = excitation.amplitude(p) * omega**2
     upper, lower = -forward / most, -backward / most  # of sin(omega t)
     phase = omega * t
     if sine(phase) > upper:
@@ -65,45 +65,40 @@ def _breakaway_of_sine(forward, backward, t, stop, p):
     return moment, UP if rising < falling else DOWN
 
 
-@inlined
-def _held(state, end, event, keeping, recorder, p):
-    """What ``follow`` returns of a bolster that is held until ``end`` (s)."""
-    if keeping:
-        record_constant(state.t, end, state.y, state.mode, recorder, p)
-    return True, State(end, state.y, state.mode, state.last_event, state.step), event
-
-
-@inlined
-def follow_stuck(state, stop, p, keeping, recorder):
-    """As ``follow``, for a stuck bolster on a base that moves harmonically."""
-    forward, backward, loaded = _breakaway_range(state.y, state.mode.segment, p)
-    if not loaded:
-        return False, state, NO_EVENT
-    end, event = _breakaway_of_sine(forward, backward, state.t, stop, p)
-    return _held(state, end, event, keeping, recorder, p)
+@term(
+    "series", off="_breakaway_of_sine(forward, backward, t, stop, p)", _breakaway_of_sine=_breakaway_of_sine
+)
+def _breakaway(forward, backward, t, stop, p):
+    """As ``_breakaway_of_sine``, of a base acceleration that is a sine or known by samples."""
+    if p.series.rows == 0:
+        return _breakaway_of_sine(forward, backward, t, stop, p)
+    size = excitation.amplitude(p)
+    end, side = sampled_input.bend_leaves(t, stop, forward / size, backward / size, p)
+    return end, NO_EVENT if side == 0 else UP if side < 0 else DOWN
 
 
 @inner
-def _waits_for_input(state, p):
-    """Whether only a sampled motion of the base can end the mode."""
-    if p.series.rows == 0 or not stuck(state.mode, p) or stray_vibration.acts(p):
+def _waits_for_input(mode, p):
+    """Whether only the motion of the base can end a mode, a sine or known by samples."""
+    if not stuck(mode, p) or stray_vibration.acts(p) or input_distortion.acts(p):
         return False
-    moving, rests = states.active(p), True
+    moving, rests = states.active(p), excitation.is_sampled_or_sine(p)
     for i in range(VELOCITY + 1, len(moving)):
         rests = rests and not moving[i]
     return rests
 
 
 @implement(follow, "suspension")
-@term("series", off="(False, state, NO_EVENT)", NO_EVENT=NO_EVENT)
-def follow_stuck_on_samples(state, stop, p, keeping, recorder, work):
-    """See the interface: follows a bolster that sticks under a sampled input."""
-    if not _waits_for_input(state, p):
+@inlined
+def follow_stuck(state, stop, p, keeping, recorder, work):
+    """See the interface: follows a bolster that sticks."""
+    if not _waits_for_input(state.mode, p):
         return False, state, NO_EVENT
     forward, backward, loaded = _breakaway_range(state.y, state.mode.segment, p)
-    if not loaded:
+    # Outside the range it rests between joints that pull: these have a range of their own.
+    if not (loaded and forward <= excitation.acceleration(state.t, p) <= backward):
         return False, state, NO_EVENT
-    size = p.input.amplitude
-    end, side = sampled_input.bend_leaves(state.t, stop, forward / size, backward / size, p)
-    event = NO_EVENT if side == 0 else UP if side < 0 else DOWN
-    return _held(state, end, event, keeping, recorder, p)
+    end, event = _breakaway(forward, backward, state.t, stop, p)
+    if keeping:
+        record_constant(state.t, end, state.y, state.mode, recorder, p)
+    return True, State(end, state.y, state.mode, state.last_event, state.step), event

@@ -428,6 +428,13 @@ def follow(state, stop, p, keeping, recorder, work):
 # Turns with bilateral joints
 
 
+@implement(interface.linear, UNILATERAL)
+@inlined
+def linear(mode, p):
+    """Contacts may open: each has states of its own."""
+    return False
+
+
 @implement(interface.leaves, UNILATERAL)
 @inlined
 def leaves(y, mode, p):
