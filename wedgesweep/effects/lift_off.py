@@ -42,6 +42,7 @@ EFFECT = Effect(
     ),
     extends=("restitution",),
 )
+LINEAR = True  # while its contacts are closed
 
 # Effects with mechanics of their own that go with it.
 GO_WITH = (

@@ -61,11 +61,9 @@ def linear(mode, p):
     """Whether a mode slips on all faces under friction that does not depend on velocity."""
     if not (p.geometry.linear and excitation.is_sine(p)) or held(mode):
         return False
-    if p.friction.set_valued:
-        return mode.column != 0
     bolster = mode.bolster != 0 or p.geometry.bolster_ratio == 0.0
     guide = mode.guide != 0 or not guide_friction.acts(p)
-    return friction.exponent(p) == 0.0 and mode.column != 0 and bolster and guide
+    return mode.column != 0 and bolster and guide and friction.exponent(p) == 0.0
 
 
 @implement(interface.free, SUSPENSION)
