@@ -12,9 +12,8 @@ import numpy as np
 from wedgesweep.compiled import contracted
 
 PI_HIGH, PI_MIDDLE, PI_LOW = 3.1415926534682512, 1.2154201012607932e-10, 4.044532497422333e-21
-# Of x^(2i+3), i = 0, 1, ..., 9, and of x^(2i+2) in the cosine.
+# Of x^(2i+3), i = 0, 1, ..., 9.
 COEFFICIENTS = tuple((-1) ** (i + 1) / factorial(2 * i + 3) for i in range(10))
-COSINES = tuple((-1) ** (i + 1) / factorial(2 * i + 2) for i in range(8))
 
 
 @contracted
@@ -49,16 +48,3 @@ def cosine(x):
     """Cosine of x (rad)."""
     half_turns = np.floor(x * (1.0 / pi))
     return -_sign(half_turns) * _sine_beyond(half_turns + 0.5, x)
-
-
-@contracted
-def small_turn(x):
-    """Cosine and sine of a small angle, at most 0.5 rad."""
-    z = x * x
-    z2 = z * z
-    c, s = COSINES, COEFFICIENTS
-    even = (c[0] + c[1] * z) + (c[2] + c[3] * z) * z2
-    odd = (s[0] + s[1] * z) + (s[2] + s[3] * z) * z2
-    higher = (c[4] + c[5] * z) + (c[6] + c[7] * z) * z2
-    z4 = z2 * z2
-    return 1.0 + z * (even + higher * z4), x + x * z * (odd + (s[4] + s[5] * z) * z4)

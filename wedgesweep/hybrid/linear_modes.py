@@ -26,17 +26,17 @@ from wedgesweep.hybrid.state import FAILED, NO_EVENT, State
 from wedgesweep.hybrid.step import step_limit
 from wedgesweep.hybrid.vectors import replaced
 from wedgesweep.traced import traced
-from wedgesweep.trigonometry import cosine, sine, small_turn
+from wedgesweep.trigonometry import cosine, sine
 
 # Displacement and velocity: the first two states of every system.
 X, VELOCITY = 0, 1
 # Scanned intervals per period of the input or of the free motion, whichever is shorter.
 SCAN = 16
-# Coefficients of cosh(sqrt(z)), sinh(sqrt(z)) / sqrt(z) and exp(x): on an interval |z| and |x| are at most
-# (2 pi / SCAN)^2 and pi / SCAN, where what is left out is less than rounding errors.
-EVEN = tuple(1.0 / factorial(2 * k) for k in range(8))
-ODD = tuple(1.0 / factorial(2 * k + 1) for k in range(8))
-EXPONENTIAL = tuple(1.0 / factorial(k) for k in range(16))
+# Coefficients of cosh(sqrt(z)), sinh(sqrt(z)) / sqrt(z), cos(sqrt(z)), sin(sqrt(z)) / sqrt(z), exp(x), and
+# (exp(x) - 1 - x) / x^2: on a piece, where z and x are small, the rest is less than rounding errors.
+EVEN, ODD = (tuple(1.0 / factorial(2 * k + odd) for k in range(8)) for odd in (0, 1))
+COSINE, SINE = (tuple((-1) ** k * c for k, c in enumerate(each)) for each in (EVEN, ODD))
+EXPONENTIAL, EXPONENTIAL_BEYOND = (tuple(1.0 / factorial(k + n) for k in range(14)) for n in (0, 2))
 # Relative distance of both squared frequencies below which the forced and the free part nearly cancel.
 RESONANT = 1e-4
 # A spring that is softer than this share of the highest squared frequency has no centre within reach.
@@ -154,24 +154,6 @@ class Move(NamedTuple):
 # Motion
 
 
-@traced
-def _even_and_odd(z):
-    """cosh(sqrt(z)) and sinh(sqrt(z)) / sqrt(z), of a small z of any sign."""
-    return _polynomial(EVEN, z), _polynomial(ODD, z)
-
-
-@traced
-def _exponential(x):
-    """exp(x) of a small x."""
-    return _polynomial(EXPONENTIAL, x)
-
-
-@traced
-def _ramp(x):
-    """(exp(x) - 1 - x) / x^2 of a small x."""
-    return _polynomial(EXPONENTIAL[2:], x)
-
-
 def _polynomial(c, x):
     """A polynomial by Estrin's scheme: short chains of operations that wait for each other."""
     while len(c) > 1:
@@ -180,34 +162,24 @@ def _polynomial(c, x):
     return c[0]
 
 
-@inlined
-def _move(time, motion):
-    """The move over a time (s), at most an interval."""
-    turned_cosine, turned_sine = small_turn(motion.omega * time)
-    decay = 0.5 * motion.by_velocity
-    even, odd = _even_and_odd((motion.by_x + decay * decay) * time * time)
-    s = time * odd
-    if decay != 0.0:
-        grown = _exponential(decay * time)
-        even, s = grown * even, grown * s
-    constant = 0.0
-    if motion.constant != 0.0:
-        constant = motion.constant * time * time * _ramp(motion.by_velocity * time)
-    s_rate = even + decay * s
+def _move_in(time, motion):
+    angle, half, ramp = motion.omega * time, 0.5 * motion.by_velocity, motion.by_velocity * time
+    square, z = angle * angle, (motion.by_x + half * half) * time * time
+    grown = _polynomial(EXPONENTIAL, half * time)
+    even, s = grown * _polynomial(EVEN, z), grown * time * _polynomial(ODD, z)
     return Move(
-        turned_cosine,
-        turned_sine,
-        even - decay * s,
+        _polynomial(COSINE, square),
+        angle * _polynomial(SINE, square),
+        even - half * s,
         s,
-        constant,
-        s_rate,
+        motion.constant * time * time * _polynomial(EXPONENTIAL_BEYOND, ramp),
+        even + half * s,
         motion.by_x * s,
         motion.constant * s,
     )
 
 
-@inlined
-def _moved(phase, move):
+def _phase_after(phase, move):
     return Phase(
         phase.cosine * move.cosine - phase.sine * move.sine,
         phase.sine * move.cosine + phase.cosine * move.sine,
@@ -216,9 +188,47 @@ def _moved(phase, move):
     )
 
 
-@inlined
+@traced
+def _move(time, motion):
+    """The move over a time (s), at most a piece."""
+    return _move_in(time, motion)
+
+
+@traced
+def _moved(phase, move):
+    """The phase after a move."""
+    return _phase_after(phase, move)
+
+
+@traced
 def _advanced(phase, time, motion):
-    return _moved(phase, _move(time, motion))
+    """The phase some time (s) later, at most a piece."""
+    return _phase_after(phase, _move_in(time, motion))
+
+
+@traced
+def _derivative(quantity, motion):
+    """The rate of a quantity, which is one as well."""
+    return Quantity(
+        quantity.by_rate * motion.constant,
+        quantity.by_rate * motion.by_x,
+        quantity.by_w + quantity.by_rate * motion.by_velocity,
+        motion.omega * quantity.by_sine,
+        -1.0 * motion.omega * quantity.by_cosine,
+    )
+
+
+@traced
+def _value(quantity, phase):
+    """Value at a phase."""
+    free = quantity.constant + quantity.by_w * phase.w + quantity.by_rate * phase.rate
+    return free + (quantity.by_cosine * phase.cosine + quantity.by_sine * phase.sine)
+
+
+@traced
+def _size(quantity, phase, forced):
+    """What the parts of a quantity add up to at most; ``forced``: amplitude of its forced part."""
+    return abs(quantity.constant) + abs(quantity.by_w * phase.w) + abs(quantity.by_rate * phase.rate) + forced
 
 
 @inlined
@@ -240,7 +250,7 @@ def _state(phase, y, rows):
 # Equations
 
 
-@inlined
+@inner
 def _probe(t, x, velocity, y, mode, p, out):
     """Acceleration (m/s^2) at a time and state; writes the event functions there."""
     there = replaced(replaced(y, X, x), VELOCITY, velocity)
@@ -259,18 +269,6 @@ def _forced(gain_cosine, gain_sine, by_x, by_velocity, omega):
     in_cosine = (near * gain_cosine + damped * gain_sine) / square
     in_sine = (near * gain_sine - damped * gain_cosine) / square
     return in_cosine, in_sine, square > (RESONANT * omega * omega) ** 2
-
-
-@inlined
-def _derivative(quantity, motion):
-    """The rate of a quantity, which is one as well."""
-    return Quantity(
-        quantity.by_rate * motion.constant,
-        quantity.by_rate * motion.by_x,
-        quantity.by_w + quantity.by_rate * motion.by_velocity,
-        motion.omega * quantity.by_sine,
-        -motion.omega * quantity.by_cosine,
-    )
 
 
 @inlined
@@ -363,12 +361,6 @@ def _rate(rows, i):
     return _quantity(rows[:, RATE:], i)
 
 
-@inlined
-def _value(quantity, phase):
-    free = quantity.constant + quantity.by_w * phase.w + quantity.by_rate * phase.rate
-    return free + (quantity.by_cosine * phase.cosine + quantity.by_sine * phase.sine)
-
-
 # Events
 
 
@@ -412,12 +404,6 @@ def _watch(phase, linear, watched):
             watched[count] = i
             count += 1
     watched[count] = NONE
-
-
-@inlined
-def _size(quantity, phase, forced):
-    """What the parts of a quantity add up to at most; ``forced``: amplitude of its forced part."""
-    return abs(quantity.constant) + abs(quantity.by_w * phase.w) + abs(quantity.by_rate * phase.rate) + forced
 
 
 @inner
@@ -495,7 +481,7 @@ def follow_linear(state, stop, p, keeping, recorder, work):
 # Records
 
 
-@inlined
+@inner
 def _record_point(t, weight, phase, linear, recorder):
     """Add a phase to the sums, with its weight (s) in the quadrature."""
     y = _state(phase, linear.y, linear.quantities)
