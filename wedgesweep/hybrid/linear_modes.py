@@ -67,7 +67,8 @@ class Equations(NamedTuple):
     ``modes`` (SLOTS, MOST_NUMBERS); ``motions`` (SLOTS, 13): a ``Motion`` and the ``Move`` over its step;
     ``quantities`` (SLOTS, MOST_QUANTITIES, 11): displacement, velocity and the event functions, each a
     ``Quantity``, its rate and the amplitude of its forced part; ``present`` (SLOTS, MOST_QUANTITIES): the
-    quantities that a mode has, up to a NONE; ``watched`` (MOST_QUANTITIES,): the event functions that may
+    event functions that a mode has, up to a NONE; ``extreme`` (SLOTS, MOST_QUANTITIES): those quantities
+    whose extremes are recorded, up to a NONE; ``watched`` (MOST_QUANTITIES,): the event functions that may
     vanish, up to a NONE; ``values`` (PROBES, MOST_QUANTITIES): working space.
     """
 
@@ -75,6 +76,7 @@ class Equations(NamedTuple):
     motions: Any
     quantities: Any
     present: Any
+    extreme: Any
     watched: Any
     values: Any
 
@@ -85,6 +87,7 @@ def room() -> Equations:
         np.full((SLOTS, MOST_NUMBERS), EMPTY),
         np.zeros((SLOTS, 13)),
         np.zeros((SLOTS, MOST_QUANTITIES, 11)),
+        np.full((SLOTS, MOST_QUANTITIES), NONE),
         np.full((SLOTS, MOST_QUANTITIES), NONE),
         np.full(MOST_QUANTITIES, NONE),
         np.full((PROBES, MOST_QUANTITIES), inf),
@@ -128,11 +131,12 @@ class Phase(NamedTuple):
 
 
 class Linear(NamedTuple):
-    """A mode with its equations; ``y``: its state, which but for x and x' rests."""
+    """A mode with its equations; ``slopes``: working space; ``y``: its state, of which x and x' move."""
 
     motion: Motion
     quantities: Any
-    present: Any
+    extreme: Any
+    slopes: Any
     y: Any
     mode: Any
     p: Any
@@ -162,24 +166,37 @@ def _polynomial(c, x):
     return c[0]
 
 
-def _move_in(time, motion):
+@traced
+def _undamped(time, motion):
+    """The move of a spring over a time (s), at most a piece."""
+    angle, z = motion.omega * time, motion.by_x * time * time
+    even, s = _polynomial(EVEN, z), time * _polynomial(ODD, z)
+    turned = _polynomial(COSINE, angle * angle), angle * _polynomial(SINE, angle * angle)
+    return Move(*turned, even, s, 0.0 * s, even, motion.by_x * s, 0.0 * s)
+
+
+@traced
+def _damped(time, motion):
+    """The move of a spring, a damper and a constant force over a time (s), at most a piece."""
     angle, half, ramp = motion.omega * time, 0.5 * motion.by_velocity, motion.by_velocity * time
-    square, z = angle * angle, (motion.by_x + half * half) * time * time
-    grown = _polynomial(EXPONENTIAL, half * time)
+    z, grown = (motion.by_x + half * half) * time * time, _polynomial(EXPONENTIAL, half * time)
     even, s = grown * _polynomial(EVEN, z), grown * time * _polynomial(ODD, z)
-    return Move(
-        _polynomial(COSINE, square),
-        angle * _polynomial(SINE, square),
-        even - half * s,
-        s,
-        motion.constant * time * time * _polynomial(EXPONENTIAL_BEYOND, ramp),
-        even + half * s,
-        motion.by_x * s,
-        motion.constant * s,
-    )
+    turned = _polynomial(COSINE, angle * angle), angle * _polynomial(SINE, angle * angle)
+    constant = motion.constant * time * time * _polynomial(EXPONENTIAL_BEYOND, ramp)
+    return Move(*turned, even - half * s, s, constant, even + half * s, motion.by_x * s, motion.constant * s)
 
 
-def _phase_after(phase, move):
+@inlined
+def _move(time, motion):
+    """The move over a time (s), at most a piece."""
+    if motion.by_velocity == 0.0 and motion.constant == 0.0:
+        return _undamped(time, motion)
+    return _damped(time, motion)
+
+
+@traced
+def _moved(phase, move):
+    """The phase after a move."""
     return Phase(
         phase.cosine * move.cosine - phase.sine * move.sine,
         phase.sine * move.cosine + phase.cosine * move.sine,
@@ -188,22 +205,10 @@ def _phase_after(phase, move):
     )
 
 
-@traced
-def _move(time, motion):
-    """The move over a time (s), at most a piece."""
-    return _move_in(time, motion)
-
-
-@traced
-def _moved(phase, move):
-    """The phase after a move."""
-    return _phase_after(phase, move)
-
-
-@traced
+@inlined
 def _advanced(phase, time, motion):
     """The phase some time (s) later, at most a piece."""
-    return _phase_after(phase, _move_in(time, motion))
+    return _moved(phase, _move(time, motion))
 
 
 @traced
@@ -308,21 +313,26 @@ def _write(slot, y, mode, p, equations):
     velocity = _derivative(displacement, motion)
     _store(displacement, motion, quantities[X])
     _store(velocity, motion, quantities[VELOCITY])
-    present, count = equations.present[slot], EVENTS
-    present[X], present[VELOCITY] = X, VELOCITY
+    present, extreme, count, more = equations.present[slot], equations.extreme[slot], 0, EVENTS
+    extreme[X], extreme[VELOCITY] = X, VELOCITY
     for number in range(event_count(p)):
         at_first, at_half = values[0, number], values[2, number]
         if at_first == inf:
             continue
         mean = 0.5 * (at_first + at_half)
         of_x, of_velocity = values[3, number] - at_first, values[4, number] - at_first
-        of_cosine = 0.5 * (at_first - at_half) + of_x * in_cosine + of_velocity * velocity.by_cosine
-        of_sine = values[1, number] - mean + of_x * in_sine + of_velocity * velocity.by_sine
+        driven_cosine, driven_sine = 0.5 * (at_first - at_half), values[1, number] - mean
+        of_cosine = driven_cosine + of_x * in_cosine + of_velocity * velocity.by_cosine
+        of_sine = driven_sine + of_x * in_sine + of_velocity * velocity.by_sine
         quantity = Quantity(mean + of_x * centre, of_x, of_velocity, of_cosine, of_sine)
         _store(quantity, motion, quantities[number + EVENTS])
         present[count] = number + EVENTS
         count += 1
-    present[count] = NONE
+        # Else its extremes are those of the displacement or of the velocity.
+        if driven_cosine != 0.0 or driven_sine != 0.0 or of_x * of_velocity != 0.0:
+            extreme[more] = number + EVENTS
+            more += 1
+    present[count], extreme[more] = NONE, NONE
     for i in range(len(mode)):
         equations.modes[slot, i] = mode[i]
 
@@ -381,18 +391,18 @@ def _at(time, function):
 
 
 @inlined
-def _watch(phase, linear, watched):
+def _watch(phase, linear, present, watched):
     """Note which event functions may vanish while the mode lasts.
 
     A free motion that nothing drives and no damper feeds stays within its first amplitude.
     """
-    motion, rows, present = linear.motion, linear.quantities, linear.present
+    motion, rows = linear.motion, linear.quantities
     bounded = motion.by_x < 0.0 and motion.by_velocity <= 0.0
     amplitude = speed = inf
     if bounded:
         speed = sqrt(phase.rate**2 - motion.by_x * phase.w**2)
         amplitude = speed / sqrt(-motion.by_x)
-    count, place = 0, EVENTS
+    count, place = 0, 0
     while present[place] != NONE:
         i = present[place]
         place += 1
@@ -457,9 +467,9 @@ def follow_linear(state, stop, p, keeping, recorder, work):
     motion, move = _stored_motion(numbers), _stored_move(numbers)
     if motion.step == 0.0:
         return False, state, NO_EVENT
-    linear = Linear(motion, rows, equations.present[slot], y, mode, p)
+    linear = Linear(motion, rows, equations.extreme[slot], equations.values[0], y, mode, p)
     first = _phase_at(t, y, rows, motion.omega)
-    _watch(first, linear, equations.watched)
+    _watch(first, linear, equations.present[slot], equations.watched)
     phase, number = first, NO_EVENT
     most_steps = step_limit(work.counts[1], (stop - t) * fastest(p) / (2.0 * pi))
     while t < stop and number == NO_EVENT:
@@ -481,7 +491,7 @@ def follow_linear(state, stop, p, keeping, recorder, work):
 # Records
 
 
-@inner
+@inlined
 def _record_point(t, weight, phase, linear, recorder):
     """Add a phase to the sums, with its weight (s) in the quadrature."""
     y = _state(phase, linear.y, linear.quantities)
@@ -503,24 +513,46 @@ def _record(t, end, phase, linear, recorder):
             y = _state(sampled, linear.y, linear.quantities)
             record_sample(i, y, linear.mode, recorder, linear.p)
             sampled = _moved(sampled, turn)
-        place = 0.0
-        for i in range(len(PLACES)):
-            width = (PLACES[i] - place) * span
-            later = _advanced(phase, width, motion)
-            if recorder.summed:
-                _record_extremes(t, width, phase, later, linear, recorder)
-                _record_point(t + width, WEIGHTS[i] * span, later, linear, recorder)
-            t, phase, place = t + width, later, PLACES[i]
+        if recorder.summed:
+            _add_piece(t, span, phase, linear, recorder)
+        t, phase = t + span, _advanced(phase, span, motion)
+    if recorder.summed:
+        _record_point(t, 0.0, phase, linear, recorder)
+
+
+@inlined
+def _add_piece(t, span, phase, linear, recorder):
+    """Add a piece (s) from a phase on to the sums: integrals by quadrature, extremes between its nodes."""
+    place = 0.0
+    _write_slopes(phase, linear)
+    for i in range(len(PLACES)):
+        width = (PLACES[i] - place) * span
+        later = _advanced(phase, width, linear.motion)
+        _record_extremes(t, width, phase, later, linear, recorder)
+        if WEIGHTS[i] > 0.0:
+            _record_point(t + width, WEIGHTS[i] * span, later, linear, recorder)
+        t, phase, place = t + width, later, PLACES[i]
+
+
+@inlined
+def _write_slopes(phase, linear):
+    """Write the rates of all quantities at a phase."""
+    place = 0
+    while linear.extreme[place] != NONE:
+        linear.slopes[place] = _value(_rate(linear.quantities, linear.extreme[place]), phase)
+        place += 1
 
 
 @inlined
 def _record_extremes(t, span, phase, later, linear, recorder):
     """Record the extremes of displacement, velocity and what decides on events between two phases."""
     place = 0
-    while linear.present[place] != NONE:
-        slope = _rate(linear.quantities, linear.present[place])
+    while linear.extreme[place] != NONE:
+        slope = _rate(linear.quantities, linear.extreme[place])
+        before, after = linear.slopes[place], _value(slope, later)
+        linear.slopes[place] = after
         place += 1
-        if _value(slope, phase) * _value(slope, later) < 0.0:
+        if before * after < 0.0:
             time = _zero(slope, phase, later, span, linear.motion)
             _record_point(t + time, 0.0, _advanced(phase, time, linear.motion), linear, recorder)
 
