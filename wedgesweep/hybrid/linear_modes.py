@@ -266,7 +266,10 @@ def _probe(t, x, velocity, y, mode, p, out):
 
 @inlined
 def _forced(gain_cosine, gain_sine, by_x, by_velocity, omega):
-    """Cosine and sine parts of the forced motion, and whether it is far enough from resonance."""
+    """Cosine and sine part of the forced motion (m), and whether it is far enough from resonance.
+
+    ``gain_cosine``, ``gain_sine``: those of the acceleration (m/s^2).
+    """
     if gain_cosine == 0.0 and gain_sine == 0.0:
         return 0.0, 0.0, True
     near, damped = -omega * omega - by_x, by_velocity * omega
@@ -285,11 +288,10 @@ def _store(quantity, motion, row):
     row[AMPLITUDE] = sqrt(quantity.by_cosine**2 + quantity.by_sine**2)
 
 
-@inner
-def _write(slot, y, mode, p, equations):
-    """Write the equations of a mode into a slot."""
-    values, quantities, omega = equations.values, equations.quantities[slot], 2.0 * pi / cycle(p)
-    turn = 0.25 * cycle(p)
+@inlined
+def _equation(y, mode, p, values):
+    """The motion of a mode, and its displacement as a quantity; writes the event functions at five places."""
+    omega, turn = 2.0 * pi / cycle(p), 0.25 * cycle(p)
     first = _probe(0.0, 0.0, 0.0, y, mode, p, values[0])
     quarter = _probe(turn, 0.0, 0.0, y, mode, p, values[1])
     half = _probe(2.0 * turn, 0.0, 0.0, y, mode, p, values[2])
@@ -304,32 +306,41 @@ def _write(slot, y, mode, p, equations):
         centre, constant = -constant / by_x, 0.0
     step = 2.0 * pi / SCAN / highest if usable else 0.0
     motion = Motion(constant, by_x, by_velocity, omega, step)
-    move = _move(step, motion)
+    return motion, Quantity(centre, 1.0, 0.0, in_cosine, in_sine)
+
+
+@inner
+def _write(slot, y, mode, p, equations):
+    """Write the equations of a mode into a slot."""
+    values, quantities = equations.values, equations.quantities[slot]
+    motion, displacement = _equation(y, mode, p, values)
+    velocity, move = _derivative(displacement, motion), _move(motion.step, motion)
     for i in range(5):
         equations.motions[slot, i] = motion[i]
     for i in range(8):
         equations.motions[slot, i + 5] = move[i]
-    displacement = Quantity(centre, 1.0, 0.0, in_cosine, in_sine)
-    velocity = _derivative(displacement, motion)
     _store(displacement, motion, quantities[X])
     _store(velocity, motion, quantities[VELOCITY])
     present, extreme, count, more = equations.present[slot], equations.extreme[slot], 0, EVENTS
     extreme[X], extreme[VELOCITY] = X, VELOCITY
     for number in range(event_count(p)):
-        at_first, at_half = values[0, number], values[2, number]
-        if at_first == inf:
+        first, half = values[0, number], values[2, number]
+        if first == inf:
             continue
-        mean = 0.5 * (at_first + at_half)
-        of_x, of_velocity = values[3, number] - at_first, values[4, number] - at_first
-        driven_cosine, driven_sine = 0.5 * (at_first - at_half), values[1, number] - mean
-        of_cosine = driven_cosine + of_x * in_cosine + of_velocity * velocity.by_cosine
-        of_sine = driven_sine + of_x * in_sine + of_velocity * velocity.by_sine
-        quantity = Quantity(mean + of_x * centre, of_x, of_velocity, of_cosine, of_sine)
+        mean, by_x, by_velocity = 0.5 * (first + half), values[3, number] - first, values[4, number] - first
+        driven = 0.5 * (first - half), values[1, number] - mean
+        quantity = Quantity(
+            mean + by_x * displacement.constant,
+            by_x,
+            by_velocity,
+            driven[0] + by_x * displacement.by_cosine + by_velocity * velocity.by_cosine,
+            driven[1] + by_x * displacement.by_sine + by_velocity * velocity.by_sine,
+        )
         _store(quantity, motion, quantities[number + EVENTS])
         present[count] = number + EVENTS
         count += 1
         # Else its extremes are those of the displacement or of the velocity.
-        if driven_cosine != 0.0 or driven_sine != 0.0 or of_x * of_velocity != 0.0:
+        if driven[0] != 0.0 or driven[1] != 0.0 or by_x * by_velocity != 0.0:
             extreme[more] = number + EVENTS
             more += 1
     present[count], extreme[more] = NONE, NONE
