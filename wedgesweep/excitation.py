@@ -96,6 +96,12 @@ def amplitude(p):
     return p.input_gain.scale * p.input.amplitude
 
 
+@term("series", off="amplitude(p)", amplitude=amplitude)
+def sine_amplitude(p):
+    """Amplitude of an input that is a sine (m or N); 0 where there is none."""
+    return p.series.sine[0] * amplitude(p)
+
+
 @inlined
 def _turned(turn, by):
     """Cosine and sine of the sum of two angles, both given by theirs."""

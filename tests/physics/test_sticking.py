@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from numpy.random import default_rng
 
+from wedgesweep import excitation
 from wedgesweep.compiled import compiled
 from wedgesweep.config import from_document
 from wedgesweep.sampled_input import bend_leaves, from_samples, set_sampled
@@ -53,6 +54,14 @@ def test_a_range_without_zero_is_left_before_the_samples_begin_and_after_they_en
     after, side = _leaves(rows, 0.12, 1.0, 1.0 / LENGTH, 3.0 / LENGTH)
     assert (after, side) == (pytest.approx(given.end), -1)
     assert _leaves(rows, 0.02, 1.0, -1.0 / LENGTH, 3.0 / LENGTH) == (1.0, 0)
+
+
+def test_a_bolster_that_sticks_without_input_rests():
+    """As after a release: its input was taken for a sine of the amplitude that motions are compared with."""
+    row = CONFIG.record_with({}, "coulomb", 1.0, OMEGA)
+    excitation.set_no_motion(row, LENGTH)
+    run = periodic.sampled(row, np.zeros((1, state_count())), 0, 3, 64, 1e-8)
+    assert not run.velocity.any()
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])

@@ -44,7 +44,7 @@ def carries_load_until_breakaway(y, segment, p):
 def _breakaway_of_sine(forward, backward, t, stop, p):
     """Time at which a harmonic base acceleration leaves a range (m/s^2), and the event (NO_EVENT: none)."""
     omega = p.input.omega
-    most = excitation.amplitude(p) * omega**2
+    most = excitation.sine_amplitude(p) * omega**2
     upper, lower = -forward / most, -backward / most  # of sin(omega t)
     phase = omega * t
     if sine(phase) > upper:
