@@ -18,9 +18,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from wedgesweep.compiled import inlined, inner
-from wedgesweep.hybrid import recorder as rule
 from wedgesweep.hybrid.interface import cycle, event_count, events, fastest, rate
-from wedgesweep.hybrid.recorder import first_sample, record_node, record_sample
+from wedgesweep.hybrid.recorder import NODES, WEIGHTS, first_sample, record_node, record_sample
 from wedgesweep.hybrid.search import Bracket, Sample, crossing, first_zero, may_graze, searched, zero_near
 from wedgesweep.hybrid.state import FAILED, NO_EVENT, State
 from wedgesweep.hybrid.step import step_limit
@@ -46,7 +45,7 @@ NEARLY_ZERO = 1e-12
 # Phase (rad) from which a series of order 3 leads to an event within rounding error.
 CONVERGED = 2e-4
 # The recorder's rule of quadrature, and the end of a piece, which has no weight.
-PLACES, WEIGHTS = (*rule.NODES, 1.0), (*rule.WEIGHTS, 0.0)
+PLACES, PLACE_WEIGHTS = (*NODES, 1.0), (*WEIGHTS, 0.0)
 # Longest piece that is recorded, over an interval: Gauss' rule of four points leaves 4e-10 of an energy.
 LONGEST_PIECE = 16 / 12
 # Error of the place of an extreme as a share of an interval: the extreme itself has the square of it.
@@ -166,13 +165,18 @@ def _polynomial(c, x):
     return c[0]
 
 
+def _turn(angle: Any) -> tuple[Any, Any]:
+    """Cosine and sine of a small angle (rad)."""
+    square = angle * angle
+    return _polynomial(COSINE, square), angle * _polynomial(SINE, square)
+
+
 @traced
 def _undamped(time, motion):
     """The move of a spring over a time (s), at most a piece."""
     angle, z = motion.omega * time, motion.by_x * time * time
     even, s = _polynomial(EVEN, z), time * _polynomial(ODD, z)
-    turned = _polynomial(COSINE, angle * angle), angle * _polynomial(SINE, angle * angle)
-    return Move(*turned, even, s, 0.0 * s, even, motion.by_x * s, 0.0 * s)
+    return Move(*_turn(angle), even, s, 0.0 * s, even, motion.by_x * s, 0.0 * s)
 
 
 @traced
@@ -181,9 +185,10 @@ def _damped(time, motion):
     angle, half, ramp = motion.omega * time, 0.5 * motion.by_velocity, motion.by_velocity * time
     z, grown = (motion.by_x + half * half) * time * time, _polynomial(EXPONENTIAL, half * time)
     even, s = grown * _polynomial(EVEN, z), grown * time * _polynomial(ODD, z)
-    turned = _polynomial(COSINE, angle * angle), angle * _polynomial(SINE, angle * angle)
     constant = motion.constant * time * time * _polynomial(EXPONENTIAL_BEYOND, ramp)
-    return Move(*turned, even - half * s, s, constant, even + half * s, motion.by_x * s, motion.constant * s)
+    return Move(
+        *_turn(angle), even - half * s, s, constant, even + half * s, motion.by_x * s, motion.constant * s
+    )
 
 
 @inlined
@@ -540,8 +545,8 @@ def _add_piece(t, span, phase, linear, recorder):
         width = (PLACES[i] - place) * span
         later = _advanced(phase, width, linear.motion)
         _record_extremes(t, width, phase, later, linear, recorder)
-        if WEIGHTS[i] > 0.0:
-            _record_point(t + width, WEIGHTS[i] * span, later, linear, recorder)
+        if PLACE_WEIGHTS[i] > 0.0:
+            _record_point(t + width, PLACE_WEIGHTS[i] * span, later, linear, recorder)
         t, phase, place = t + width, later, PLACES[i]
 
 

@@ -100,8 +100,8 @@ def _kits(names: tuple[str, ...], series: bool) -> tuple[np.dtype, np.dtype, np.
 def _dtype(parts: list[tuple], names: Iterable[str]) -> np.dtype:
     # ``linear``: but for friction that depends on velocity; ``absolute``: the displacement is against the
     # ground, not against the base.
-    numbers = [("belt_velocity", np.float64)]
-    own = [*((name, np.int64) for name in ("kit", "linear", "absolute", "forced")), *numbers]
+    own: list[tuple] = [(name, np.int64) for name in ("kit", "linear", "absolute", "forced")]
+    own += [("belt_velocity", np.float64)]
     own += [(quantity.name, np.float64) for quantity in OSCILLATOR]
     effects = records.effect_parts(name for name in names if name not in ADJUSTED)
     return np.dtype([*parts, *effects, *records.COMMON, ("oscillator", own)])
