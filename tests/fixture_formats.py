@@ -61,7 +61,7 @@ def uff(path, columns):
         entry = pyuff.prepare_58(
             binary=0, func_type=1, ver_num=0, load_case_id=0, rsp_node=1, rsp_dir=1, ref_node=1, ref_dir=1,
             ord_data_type=4, num_pts=t.size, abscissa_spacing=1, abscissa_min=0.0, abscissa_inc=0.001,
-            z_axis_value=0.0, data=values, x=t, id1="a", id2="b", id3="c", id4="d", id5="e",
+            z_axis_value=0.0, data=values, x=t, id1="record", id2="b", id3="c", id4="d", id5="e",
             rsp_ent_name="r", ref_ent_name="s", abscissa_spec_data_type=17, ordinate_spec_data_type=8,
             orddenom_spec_data_type=0, z_axis_spec_data_type=0,
         )  # fmt: skip

@@ -275,6 +275,28 @@ def test_a_damper_does_not_stand_for_the_friction_of_a_shaken_mass(tmp_path):
     assert float(re.search(r"shows about (\S+) N", first)[1]) == pytest.approx(friction, rel=0.1)
 
 
+def test_an_earthquake_tells_a_spring_whose_mass_sticks_in_between(tmp_path):
+    """The base is read as such although the mass keeps what it moved when it sticks at last."""
+    t, random = np.arange(0.0, 40.0, 5e-3), np.random.default_rng(8)
+    band = signal.butter(2, (0.3, 6.0), "band", fs=200.0, output="sos")
+    base = signal.sosfilt(band, random.normal(size=t.size)) * np.minimum(t / 4.0, np.exp((12.0 - t) / 6.0))
+    base *= 3.0 / np.abs(base).max()
+    x, v, substeps = np.zeros(t.size), 0.0, 4
+    for i in range(1, t.size):  # by Moreau's steps, in which friction stops the mass at most
+        place = x[i - 1]
+        for _ in range(substeps):
+            step = 5e-3 / substeps
+            free = v - step * (14.2 * place + 0.38 * v + base[i])
+            v = np.sign(free) * max(abs(free) - 0.35 * step, 0.0)
+            place += step * v
+        x[i] = place
+    names = "Time (s),Table Acc (m/s^2),Drift (mm)"
+    file = text(tmp_path / "one.csv", t, base, 1e3 * x + 0.05 * random.normal(size=t.size), header=names)
+    found = begun(tmp_path, file)
+    assert found.columns["displacement"]["of"] == "relative"
+    assert found.model.oscillator["spring"] == pytest.approx(14.2, rel=0.2)
+
+
 def test_a_block_on_a_shaken_table_has_no_spring(tmp_path):
     """It slips all the time: friction accelerates it until it meets the table's velocity."""
     files, t, friction = [], np.arange(0.0, 6.0, 1e-3), 0.5
@@ -333,6 +355,87 @@ def test_runs_side_by_side_and_between_pauses_are_tests(tmp_path):
     text(tmp_path / "two.csv", *twice, header="t,d,F")
     found = begun(tmp_path / "two", tmp_path / "two.csv")
     assert [test.time.size for test in found.tests] == [t.size, t.size]
+
+
+def test_sheets_with_titles_and_summaries_are_runs(tmp_path):
+    openpyxl = pytest.importorskip("openpyxl")
+    book = openpyxl.Workbook()
+    for sheet in (book.active, book.create_sheet("fast")):
+        sheet.append(["Fork on a dyno"])
+        sheet.merge_cells("A1:C1")
+        for row in (
+            [],
+            ["Rate", 1000],
+            ["Time", "Stroke", "Load"],
+            ["s", "mm", "N"],
+            *zip(*loop(), strict=True),
+        ):
+            sheet.append([*row])
+        sheet.append(["Max", 50.0, 33.0])
+    book.save(tmp_path / "one.xlsx")
+    found = begun(tmp_path, tmp_path / "one.xlsx")
+    assert [test.time.size for test in found.tests] == [6000, 6000]
+    assert found.model.oscillator["mass"] == pytest.approx(3.0, rel=0.15)
+
+
+def test_groups_of_a_recorder_are_runs(tmp_path):
+    tdms = pytest.importorskip("nptdms")
+    _, x = decay()
+    wave = {"wf_increment": 1.0 / RATE, "unit_string": "mm"}
+    with tdms.TdmsWriter(tmp_path / "one.tdms") as writer:
+        writer.write_segment([tdms.ChannelObject(f"Hit {i}", "LVDT", i * x, wave) for i in (1, 2, 3)])
+    found = begun(tmp_path, tmp_path / "one.tdms")
+    assert [np.ptp(test.displacement) for test in found.tests] == pytest.approx([0.02, 0.04, 0.06], rel=0.05)
+
+
+def test_a_time_that_begins_anew_parts_runs(tmp_path):
+    """Each is a mass that is held for half a second before it is let go."""
+    t, x = decay()
+    held = np.r_[np.full(500, 10.0), x[200:-300]]
+    text(
+        tmp_path / "one.csv", np.tile(t, 3), np.r_[held, 0.5 * held, held], header="Time (s),String Pot (in)"
+    )
+    found = begun(tmp_path, tmp_path / "one.csv")
+    assert [test.time[0] for test in found.tests] == pytest.approx([0.52, 10.52, 20.52], abs=0.02)
+    natural = np.sqrt(found.model.oscillator["spring"] / found.model.oscillator["mass"])
+    assert natural == pytest.approx(2.0 * np.pi * 4.0, rel=0.05)
+    assert "time begins anew in the file" in invoke("check", tmp_path / "measured.toml")
+
+
+def test_power_flows_from_the_base_to_the_mass(tmp_path):
+    """Of two accelerometers without a name, whichever comes first."""
+    t = np.arange(20000) / RATE
+    base = np.sin(2.0 * np.pi * (3.0 * t + 0.4 * t**2))
+    natural, ratio = 2.0 * np.pi * 9.0, 0.03
+    filtered = signal.lti([2.0 * ratio * natural, natural**2], [1.0, 2.0 * ratio * natural, natural**2])
+    _, mass, _ = signal.lsim(filtered, base, t)
+    for place, columns in enumerate(((base, mass), (mass, base)), 1):
+        text(tmp_path / "one.csv", t, *columns, header="Time [s],A1 [g],A2 [g]")
+        assert begun(tmp_path, tmp_path / "one.csv").columns["input"]["column"] == f"A{place} [g]"
+
+
+@pytest.mark.parametrize(
+    ("header", "columns"),
+    [
+        ("sample,t_us,pos_cmd_mm,pos_act_mm,i_q_mA,drive_status", ("pos_act_mm", "i_q_mA")),
+        (
+            "n,t [us],Setpoint (%),Travel (%),Actuator Pressure (psi),Mode",
+            ("Travel (%)", "Actuator Pressure (psi)"),
+        ),
+    ],
+)
+def test_what_stands_for_a_force_is_neither_a_count_nor_a_command(tmp_path, header, columns):
+    t, d, f = loop()
+    text(tmp_path / "one.csv", np.arange(t.size), 1e6 * t, d, d, f, 7.0 + 0.0 * t, header=header)
+    found = begun(tmp_path, tmp_path / "one.csv").columns
+    assert (found["displacement"]["column"], found["force"]["column"]) == columns
+
+
+def test_a_summary_below_the_data_is_left_out(tmp_path):
+    file = text(tmp_path / "one.csv", *loop(), header="Zeit [s];Weg [mm];Kraft [daN]", delimiter=";")
+    file.write_text(file.read_text() + "\nMittelwert;0,01;0,02\n------;;\nMax;50;3\n")
+    begun(tmp_path, file)
+    assert "3 lines of text below the data left out" in invoke("check", tmp_path / "measured.toml")
 
 
 def test_channels_of_two_loggers_are_one_test(tmp_path):

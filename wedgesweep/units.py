@@ -42,8 +42,10 @@ UNITS = {
     },
     "force": {
         **_prefixed("N", "mukM"),
+        "daN": 10.0,
         **{"lbf": POUND, "lb": POUND, "kip": 1e3 * POUND, "kgf": GRAVITY, "gf": 1e-3 * GRAVITY},
-        **{"N m": 1.0, "mN m": 1e-3, "kN m": 1e3},
+        **{"N m": 1.0, "mN m": 1e-3, "kN m": 1e3, "N cm": 1e-2, "N mm": 1e-3},
+        **{"lbf in": POUND * INCH, "lbf ft": POUND * FOOT},
     },
 }
 
@@ -64,7 +66,7 @@ SPELLINGS = {
     "\u00b7": " ",
 }
 WORDS = {
-    **{"sec": "s", "secs": "s", "seconds": "s", "second": "s", "msec": "ms", "Nm": "N m"},
+    **{"sec": "s", "secs": "s", "seconds": "s", "second": "s", "msec": "ms"},
     **{
         "\u00b0": "deg",
         "\u00b0/s": "deg/s",
@@ -77,13 +79,17 @@ WORDS = {
         **dict.fromkeys(("degree", "degrees"), "deg"),
         **dict.fromkeys(("radian", "radians"), "rad"),
         **dict.fromkeys(("meter", "meters", "metres"), "m"),
+        **{f"{p}N{sign}m": f"{p}N m" for p in ("", "m", "k") for sign in ("", ".", "-", "*")},
+        **{"Nmm": "N mm", "Ncm": "N cm"},
+        **dict.fromkeys(("in-lb", "in-lbf", "lbf-in", "lb-in", "lbf.in"), "lbf in"),
+        **dict.fromkeys(("ft-lb", "ft-lbf", "lbf-ft", "lb-ft", "lbf.ft"), "lbf ft"),
     },
 }
 
 
 def angular(unit: str) -> bool:
     """Whether a unit is one of an angle, its rates or a torque."""
-    return any(part in unit for part in ("rad", "deg", "rpm", "N m"))
+    return any(part in unit for part in ("rad", "deg", "rpm", "N m", "N cm", "lbf "))
 
 
 def usual(unit: str) -> str:

@@ -8,6 +8,7 @@ from scipy.stats import chi2
 
 from wedgesweep.diagnose import diagnosis, ladder, verdict
 from wedgesweep.diagnose.explanation import POSSIBLE, Explanation
+from wedgesweep.diagnose.fit_parameters import Hypothesis
 from wedgesweep.diagnose.ladder import Level, Rated
 from wedgesweep.diagnose.parameter_constancy import Constancy
 from wedgesweep.diagnose.verdict import Thresholds, decide, on_held_out_tests, p_where_it_shows
@@ -29,11 +30,13 @@ def explained(
     far=(),
     relaxed=None,
     power=100.0,
+    vanishes=False,
 ):
     """An explanation.
 
     ``values``: numbers of its effects; ``far``: uncertain ones that are far from stated; ``relaxed``: its
-    misfit if model errors are larger than allowed; ``power``: of the response, over that of noise.
+    misfit if model errors are larger than allowed; ``power``: of the response, over that of noise;
+    ``vanishes``: whether it ended where its effect is as good as absent.
     """
     data = SimpleNamespace(
         model=SimpleNamespace(effects={}),
@@ -48,7 +51,9 @@ def explained(
             compared_again=lambda evaluation: SimpleNamespace(chi2=relaxed if size > MODEL_ERROR else q)
         ),
     )
-    model = SimpleNamespace(data=data, size=numbers * len(effects), values=lambda x: values)
+    hypothesis = SimpleNamespace(vanishes=lambda x: vanishes)
+    size = numbers * len(effects)
+    model = SimpleNamespace(data=data, size=size, values=lambda x: values, hypothesis=hypothesis)
     fit = SimpleNamespace(
         chi2=q,
         dof=DOF,
@@ -253,6 +258,14 @@ def test_a_tolerable_base_model_needs_no_cause_that_held_out_tests_do_not_confir
     assert found.verdict == "consistent-with"
     assert on_held_out_tests(found, base, 0.5, [-0.3, 1.0]).verdict == "nothing-missing"
     assert on_held_out_tests(found, base, 0.5, [0.1, 1.0]).verdict == "consistent-with"
+
+
+def test_an_effect_that_is_as_good_as_absent_is_no_cause():
+    base, absent = explained(700.0), explained(600.0, "damper_play", vanishes=True)
+    assert verdict_of(base, absent).verdict == "nothing-missing"
+    play = Hypothesis(("damper_play",))
+    assert play.vanishes(play.low)
+    assert not play.vanishes(play.low + 0.1)
 
 
 FAR = ("bolster_mass",)

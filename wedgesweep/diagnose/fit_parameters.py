@@ -154,6 +154,14 @@ class Hypothesis:
 
         return np.array([ends(each) for each in self.parameters]).reshape(-1, 2).T
 
+    def vanishes(self, x: np.ndarray) -> bool:
+        """Whether an effect of one length, such as a play, has the smallest one: it is as good as absent."""
+        effects = [each.effect for each in self.parameters]
+        return any(
+            each.logarithmic and effects.count(each.effect) == 1 and value <= low
+            for each, value, low in zip(self.parameters, x, self.low, strict=False)
+        )
+
     @cached_property
     def scale(self) -> np.ndarray:
         """Typical changes of x, (k,); see ``FitParameter.scale``."""

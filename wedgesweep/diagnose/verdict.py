@@ -102,8 +102,10 @@ def eligible(each: Explanation) -> bool:
     """Whether a fit may be called a cause.
 
     An effect that is an uncertain parameter of the base model counts as one only if it is off by more than
-    UNCERTAIN standard deviations.
+    UNCERTAIN standard deviations, and a play only if it is larger than the smallest one that is searched.
     """
+    if each.fit.model.hypothesis.vanishes(each.fit.x):
+        return False
     off = deviations(each)
     return all(off[name] > UNCERTAIN for name in off)
 

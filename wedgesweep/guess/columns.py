@@ -17,10 +17,11 @@ FORCE, INPUT, TIME = "force", "input", "time"
 STEMS = {
     TIME: r"time|\bdate|zeit|temps\b|tempo\b|stamp|seconds|clock",
     "acceleration": r"acc|beschl|ddot|\bimu",
-    "velocity": r"vel|speed|geschw|vitesse|rpm|omega|tacho|qdot|xdot|gyro",
-    FORCE: r"force|friction|reibung|torque|trq|kraft|moment|thrust|effort|load|traction|\btau",
+    "velocity": r"(?<!tra)vel|speed|geschw|vitesse|rpm|omega|tacho|qdot|xdot|gyro",
+    FORCE: r"force|friction|reibung|torque|trq|kraft|moment|thrust|effort|load|traction|\btau"
+    r"|forza|fuerza|copp?ia\b|couple\b",
     "displacement": r"disp|pos|ang[lu]|weg\b|winkel|laser|lvdt|stroke|encod|deflect|travel|rotation|extens"
-    r"|position|distance|hub\b|theta|plate|mass|auslenk|drehwinkel",
+    r"|distance|hub\b|theta|plate|mass|auslenk|verschieb|cors[ae]\b|course|d[ée]plac|desplaz|string.?pot",
 }
 SYMBOLS = {
     TIME: r"t|ts|sec|s\.?e\.?c|s",
@@ -38,13 +39,17 @@ DRIVES = (
 # A count of samples, which is no time.
 COUNTS = r"n|nr\.?|no\.?|#|index|samples?|points?|count(er)?|row|scan"
 NOT_MEASURED = (
-    r"ref|desired|target|set.?p|command|cmd|soll|_des|error|not selected|status|trigger|limit|coeff|\bcof\b"
+    r"ref|supply|ambient|desired|target|set.?p|command|cmd|soll|_des|error|not selected|status|trigger|limit"
+    r"|coeff|\bcof\b"
 )
 # Names of the load that presses two faces together, and the std over the mean below which it is set, not
 # a response: control of a tribometer's load holds it to a few per cent.
 PRESSES, SET = r"load|normal|clamp|\bf_?[nz]\b|last\b|kraft_?n\b", 0.3
-# A motor's current may stand for its torque.
-STANDS_FOR_FORCE = r"curr|amp|strom|pwm|duty"
+# A motor's current may stand for its torque, a pressure for the force of its piston.
+STANDS_FOR_FORCE = r"curr|\bamp|strom|pwm|duty|press|druck|volt"
+STANDING_UNITS = ("A", "mA", "bar", "mbar", "psi", "kPa", "MPa")
+# Share of it that the motion explains from which it does (a convention): of a supply it explains nothing.
+STANDS = 0.5
 # Points of a column for a quantity.
 OF_UNIT, OF_NAME, OF_FOREIGN, OF_COMMAND, OF_SHARED, OF_PROXY = 4.0, 3.0, -1.5, -4.0, 0.3, 1.0
 # Correlation from which two columns are one signal in two units, and one is the derivative of another.
@@ -55,6 +60,8 @@ UNLIKE = 0.05
 COMPUTED = 0.02
 # What has no name is time if this share of its steps differs from the median one by less than so much of it.
 EVEN, UNEVEN = 0.9, 0.75
+# Lines of a cross-spectrum that count, over its highest one: below is noise, and drift of sensors.
+LINES = 1e-3
 # Points at which columns are compared.
 POINTS = 3000
 # Numbers beyond it are damage: their differences and squares may be no numbers.
@@ -67,7 +74,7 @@ DAYS, EPOCH = (2e4, 8e4), (1e9, 4e9)
 RUN = re.compile(r"(?:run|trial|versuch|messung|repeat|rep|cycle)\W*(\d+)", re.IGNORECASE)
 # Units and names of angles and torques.
 ANGULAR = re.compile(
-    r"rad|deg|rpm|N m|ang[lu]|winkel|theta|phi|\bq|rotat|joint|torsion|pendul|torque|omega|\btau"
+    r"rad|deg|rpm|N m|N cm|lbf |ang[lu]|winkel|theta|phi|\bq|rotat|joint|torsion|pendul|torque|omega|\btau"
     r"|encod|gyro"
 )
 BRACKETS, WORDS = re.compile(r"[\[(]([^\[\]()]*)[\])]"), re.compile(r"[a-zA-ZäöüÄÖÜß/']+|\d+")
@@ -110,6 +117,30 @@ def unit_of(column: Column, quantities: Sequence[str]) -> str:
 
 
 def runs_of(columns: Sequence[Column]) -> list[list[Column]]:
+    """Columns of each run of a file: in groups with the same names, or side by side."""
+    return [run for group in _groups(columns) for run in _side_by_side(group)]
+
+
+def _groups(columns: Sequence[Column]) -> list[list[Column]]:
+    """Columns of each group of a file, where several hold the same names in the same units.
+
+    A group of one channel must have its clock. Other columns that are as long belong to all groups.
+    """
+    groups: dict[str, list[Column]] = {}
+    for column in columns:
+        groups.setdefault(column.group, []).append(column)
+    held = {group: {(*c.words[:1], c.channel.unit) for c in inside} for group, inside in groups.items()}
+    last = columns[-1]
+    alike = [group for group in groups if held[group] == held[last.group]]
+    if len(alike) < 2 or (len(held[last.group]) == 1 and last.channel.clock is None):
+        return [list(columns)]
+    others = [
+        c for c in columns if c.group not in alike and c.channel.values.size == last.channel.values.size
+    ]
+    return [[*groups[group], *others] for group in alike]
+
+
+def _side_by_side(columns: Sequence[Column]) -> list[list[Column]]:
     """Columns of each run where several stand side by side, each with a time of its own or a number."""
     starts = [i for i, column in enumerate(columns) if is_time(column)]
     if len(starts) < 2:
@@ -139,7 +170,7 @@ def is_time(column: Column) -> bool:
     values = _numbers(column)
     if values.size < 3 or not values[0] < values[-1]:
         return False
-    if re.fullmatch(COUNTS, column.label.strip().lower()):
+    if _is_count(column):
         return False
     named = column.channel.unit == DATETIME or _names(column, TIME) or unit_of(column, [TIME]) in UNITS[TIME]
     onward = float((np.diff(values) >= 0.0).mean())
@@ -147,6 +178,10 @@ def is_time(column: Column) -> bool:
         return onward > 0.9
     known = _names_anything(column) or unit_of(column, [TIME, *QUANTITIES])
     return not known and _goes_evenly(column)
+
+
+def _is_count(column: Column) -> bool:
+    return re.fullmatch(COUNTS, column.label.strip().lower()) is not None
 
 
 def _goes_evenly(column: Column) -> bool:
@@ -159,7 +194,7 @@ def _goes_evenly(column: Column) -> bool:
 def _is_abscissa(column: Column) -> bool:
     """Whether a column may be time although its letter is that of a motion, as x of a plot; no count is."""
     label = column.label.strip().lower()
-    named = re.fullmatch(COUNTS, label) or any(re.search(stem, label) for stem in STEMS.values())
+    named = _is_count(column) or any(re.search(stem, label) for stem in STEMS.values())
     whole = not np.mod(_numbers(column), 1.0).any()
     return not (named or whole or unit_of(column, [TIME, *QUANTITIES])) and _goes_evenly(column)
 
@@ -167,20 +202,53 @@ def _is_abscissa(column: Column) -> bool:
 def choose(columns: Sequence[Column]) -> Run:
     """The channels among the columns of a run."""
     time = next(filter(is_time, columns), None) or next(filter(_is_abscissa, columns), None)
+    stamps = None if time is None else time.channel.values
     rest = [column for column in columns if column is not time and not is_time(column) and _varies(column)]
+    rest = [column for column in rest if not (_is_count(column) and _goes_evenly(column))]
     load = next(filter(_presses, columns), None)
     channels = _by_name([column for column in rest if column is not load])
     if FORCE not in channels:
         load, channels = None, _by_name(rest)
     if not any(name in channels for name in MOTIONS):
         unnamed = [column for column in rest if not _names_anything(column)]
-        channels |= _by_numbers(unnamed, None if time is None else time.channel.values)
+        channels |= _by_numbers(unnamed, stamps)
+    if FORCE in channels and "displacement" in channels and unit_of(channels[FORCE], [FORCE]) in FOREIGN:
+        signals = [_thinned(channels[name], stamps) for name in ("displacement", FORCE)]
+        if _share(*signals) < STANDS:
+            del channels[FORCE]
+    if set(channels) == {"acceleration"}:
+        channels = _of_base_and_mass(channels["acceleration"], rest)
     chosen = with_units(channels)
     if "velocity" in chosen and "displacement" in chosen:
         chosen["velocity"] = _derived(chosen, time)
     used = (time, load, *channels.values())
     left = tuple(column for column in columns if all(column is not each for each in used))
     return Run(None if time is None else _clock(time), chosen, left, load)
+
+
+def is_relative(column: Column) -> bool:
+    """Whether a column is named as a motion against the base."""
+    return re.search(r"(?<![a-z])rel(?![a-z])|relativ|drift", column.label.lower()) is not None
+
+
+def _of_base_and_mass(found: Column, columns: Sequence[Column]) -> dict[str, Column]:
+    """Channels of two accelerometers: the input is that of the base, from which power flows to the mass.
+
+    The base moves the mass by its force, which is in proportion to the mass's acceleration.
+    """
+    alike = [c for c in columns if _points(c, "acceleration") >= _points(found, "acceleration")]
+    if len(alike) != 2 or alike[0].channel.values.size != alike[1].channel.values.size:
+        return {"acceleration": found}
+    first, second = (np.fft.rfft(_centred(c) * np.hanning(c.channel.values.size)) for c in alike)
+    lines = (first.conj() * second)[1:]
+    lines[np.abs(lines) < LINES * np.abs(lines).max()] = 0.0
+    to_first = float(np.sum(lines.imag / np.arange(1, lines.size + 1)))
+    base, mass = alike[::-1] if to_first > 0.0 else alike
+    return {"acceleration": mass, INPUT: base}
+
+
+def _centred(column: Column) -> np.ndarray:
+    return np.nan_to_num(column.channel.values - np.mean(_numbers(column)))
 
 
 def _presses(column: Column) -> bool:
@@ -233,7 +301,7 @@ def _points(column: Column, quantity: str) -> float:
         return 0.0
     first = next((each for each in STEMS if _names(column, each)), None)
     points += OF_NAME if first == quantity else 0.0
-    if quantity == FORCE and re.search(STANDS_FOR_FORCE, label):
+    if quantity == FORCE and (re.search(STANDS_FOR_FORCE, label) or unit in STANDING_UNITS):
         points += OF_PROXY - (OF_FOREIGN if unit in FOREIGN else 0.0)
     if re.search(NOT_MEASURED, label):
         points += OF_COMMAND
@@ -354,19 +422,20 @@ def _correlation(first: np.ndarray, second: np.ndarray) -> float:
 
 def _explained(displacement: np.ndarray, force: np.ndarray) -> float:
     """Share of a force that place and direction of a motion explain, less what they do the other way."""
+    return _share(displacement, force) - _share(force, displacement)
 
-    def share(x: np.ndarray, f: np.ndarray) -> float:
-        size = min(x.size, f.size)
-        x, f = x[:size], f[:size]
-        v = np.gradient(np.convolve(x, np.ones(9) / 9.0, mode="same"))
-        speed = max(float(np.abs(v).std()), 1e-300)
-        parts = np.column_stack([np.ones(size), x, v, np.tanh(5.0 * v / speed), np.gradient(v)])
-        if not (np.isfinite(parts).all() and np.isfinite(f).all()):
-            return 0.0
-        left = f - parts @ np.linalg.lstsq(parts, f, rcond=None)[0]
-        return 1.0 - float(left.var() / max(f.var(), 1e-300))
 
-    return share(displacement, force) - share(force, displacement)
+def _share(x: np.ndarray, f: np.ndarray) -> float:
+    """Share of a force (n,) that place and direction of a motion (n,) explain."""
+    size = min(x.size, f.size)
+    x, f = x[:size], f[:size]
+    v = np.gradient(np.convolve(x, np.ones(9) / 9.0, mode="same"))
+    speed = max(float(np.abs(v).std()), 1e-300)
+    parts = np.column_stack([np.ones(size), x, v, np.tanh(5.0 * v / speed), np.gradient(v)])
+    if not (np.isfinite(parts).all() and np.isfinite(f).all()):
+        return 0.0
+    left = f - parts @ np.linalg.lstsq(parts, f, rcond=None)[0]
+    return 1.0 - float(left.var() / max(f.var(), 1e-300))
 
 
 def _derived(chosen: Mapping[str, Chosen], time: Column | None) -> Chosen:

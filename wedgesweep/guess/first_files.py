@@ -12,7 +12,7 @@ from wedgesweep import measured
 from wedgesweep.errors import InputError
 from wedgesweep.files import write_text
 from wedgesweep.guess import document
-from wedgesweep.guess.columns import INPUT
+from wedgesweep.guess.columns import INPUT, is_relative
 from wedgesweep.guess.model import Numbers, against_input, numbers
 from wedgesweep.guess.tests import Guessed, tests_of
 from wedgesweep.measured import Measurement, consistency
@@ -43,8 +43,9 @@ def write(path: Path, files: Sequence[Path]) -> list[Path]:
     if problems:
         raise InputError(problems)
     tests, model, found = tests_of(surveys), path.parent / MODEL, UNKNOWN
-    relative: frozenset[str] = frozenset()
-    turns = any(angular(each.unit) for each in tests[0].run.channels.values())
+    channels = tests[0].run.channels
+    relative = named = frozenset(name for name, each in channels.items() if is_relative(each.column))
+    turns = any(angular(each.unit) for each in channels.values())
     for _ in range(MOST_LOOKS):
         write_text(path, document.measured(path, model, tests, surveys, found, relative))
         write_text(model, document.model(found, _is_forced(tests[0]), turns))
@@ -53,7 +54,7 @@ def write(path: Path, files: Sequence[Path]) -> list[Path]:
         except InputError:
             break
         before = tests, found, relative
-        relative = against_input(measurement)
+        relative = against_input(measurement) | named
         tests, found = _with_signs(tests, measurement), numbers(measurement)
         if (tests, found, relative) == before:
             break

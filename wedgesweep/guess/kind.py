@@ -13,7 +13,7 @@ from wedgesweep.measured.stationarity import MOST_LEVEL_RATIO, MOST_MOVED, stati
 
 # What does not repeat, over what does, in a steady record; samples that tell it.
 NOISE, MOST = 0.5, 20_000
-# A pause of PAUSE steps of the clock parts two runs, if each has FEWEST samples and this SHARE of the record.
+# A pause of PAUSE steps of the clock parts runs that have FEWEST samples and this SHARE of the longest one.
 PAUSE, FEWEST, SHARE = 20.0, 200, 0.1
 # Part of a free motion in which it must be at its largest, and share of the largest swing above which the
 # swing before that counts as a push.
@@ -29,6 +29,12 @@ class Part:
 
     start: float | None = None
     end: float | None = None
+
+    def holds(self, time: np.ndarray) -> np.ndarray:
+        """Which of the times (n,) in s are in this part."""
+        return ((self.start is None) | (time >= (self.start or 0.0))) & (
+            (self.end is None) | (time <= (self.end or 0.0))
+        )
 
 
 WHOLE = Part()
@@ -74,7 +80,8 @@ def parts_of(time: np.ndarray) -> list[Part]:
         return [WHOLE]
     step = float(np.median(steps))
     ends = [0, *(np.flatnonzero(steps > PAUSE * step) + 1).tolist(), stamps.size]
-    runs = [(a, b) for a, b in pairwise(ends) if b - a >= max(FEWEST, SHARE * stamps.size)]
+    fewest = max(FEWEST, SHARE * max(b - a for a, b in pairwise(ends)))
+    runs = [(a, b) for a, b in pairwise(ends) if b - a >= fewest]
     if len(runs) < 2:
         return [WHOLE]
     first = float(stamps[0])
@@ -90,23 +97,28 @@ def _down(time: float, step: float) -> float:
     return float(np.round(time - 0.5 * step, max(0, 1 - int(np.floor(np.log10(abs(step)))))))
 
 
-def from_release(signal: np.ndarray, time: np.ndarray) -> Part:
-    """The part of a free motion (n,) from its largest swing on, if it was pushed before."""
-    rest = float(np.median(signal[-max(int(TAIL * signal.size), 1) :]))
-    swing = np.abs(signal - rest)
-    largest = int(swing.argmax())
-    pushed = largest > 2 and swing[0] < PUSH * swing[largest] and largest < BEGINNING * signal.size
-    return Part(start=_down(float(time[largest]), float(time[1] - time[0]))) if pushed else WHOLE
+def from_release(signal: np.ndarray, time: np.ndarray) -> float | None:
+    """When a free motion (n,) begins, if it was held or pushed before: let go, or at its largest swing."""
+    place = signal - np.median(signal[-max(int(TAIL * signal.size), 1) :])
+    swing = np.abs(place)
+    largest, high = int(swing.argmax()), swing >= PUSH * swing.max()
+    first = int(high.argmax())
+    left = first + int((~high[first:]).argmax())
+    to_rest = int((place[left:] * place[first] <= 0.0).argmax())
+    if left - first > to_rest > 0:  # a swing is as long at its top as from there to the rest position
+        return _down(float(time[left - 1]), float(time[1] - time[0]))
+    pushed = largest > 2 and not high[0] and largest < BEGINNING * signal.size
+    return _down(float(time[largest]), float(time[1] - time[0])) if pushed else None
 
 
-def from_steady(signal: np.ndarray, time: np.ndarray) -> Part:
-    """The part of a driven motion (n,) after its run-up, which is unlike the second half of the record."""
+def from_steady(signal: np.ndarray, time: np.ndarray) -> float | None:
+    """When a driven motion (n,) has run up, if its beginning is unlike the second half of the record."""
     cycles = cut(time, signal, estimate_frequency(time, signal))
     half = cycles.times.size // 2
     away = np.linalg.norm(cycles.harmonics - cycles.harmonics[half:].mean(axis=0), axis=1)
     run_up = np.flatnonzero(away[:half] > RUN_UP * away[half:].max())
     if not run_up.size or cycles.times.size - run_up[-1] - 1 < FEWEST_CYCLES:
-        return WHOLE
+        return None
     period = cycles.times[1] - cycles.times[0]
     start = cycles.middle + cycles.times[run_up[-1]] + 0.5 * period
-    return Part(start=_down(float(start), float(time[1] - time[0])))
+    return _down(float(start), float(time[1] - time[0]))

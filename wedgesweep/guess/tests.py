@@ -9,6 +9,7 @@ import numpy as np
 
 from wedgesweep.guess.columns import FORCE, HUGE, INPUT, Chosen, Run, choose, runs_of, with_units
 from wedgesweep.guess.kind import WHOLE, Part, from_release, from_steady, kind_of, parts_of
+from wedgesweep.measured.clock import continued
 from wedgesweep.measured.declarations import LOOP, MOTIONS, STEADY, TRANSIENT
 from wedgesweep.readers.survey import Survey
 from wedgesweep.units import UNITS
@@ -99,18 +100,25 @@ def _with_kind(test: Guessed) -> list[Guessed]:
         given = channels.pop(FORCE)
         channels[INPUT] = replace(given, keys={**given.keys, "quantity": FORCE})
     time, signals = _evenly(replace(test, run=replace(test.run, channels=channels)))
-    kind, reason = kind_of(signals, time)
+    parts = parts_of(_stamps(test))
+    inside = parts[0].holds(time)
+    kind, reason = kind_of({name: each[inside] for name, each in signals.items()}, time[inside])
     if kind == LOOP:
         channels = {name: each for name, each in channels.items() if name in ("displacement", FORCE)}
     elif kind == TRANSIENT:
         channels.pop(FORCE, None)
     channels = _compared(channels)
     test = replace(test, run=_without(test.run, channels), kind=kind, reason=reason)
-    parts = parts_of(_stamps(test))
-    if kind == TRANSIENT and INPUT not in channels and parts == [WHOLE]:
-        parts = [from_release(next(iter(signals.values())), time)]
-    elif kind == STEADY and parts == [WHOLE]:
-        parts = [from_steady(next(each for name, each in signals.items() if name != INPUT), time)]
+    response = next(each for name, each in signals.items() if name != INPUT or len(signals) == 1)
+    begins = from_release if kind == TRANSIENT and INPUT not in channels else None
+    begins = from_steady if kind == STEADY else begins
+    if begins is not None:
+        insides = [part.holds(time) for part in parts]
+        begun = [begins(response[inside], time[inside]) for inside in insides]
+        parts = [
+            part if start is None else replace(part, start=start)
+            for part, start in zip(parts, begun, strict=True)
+        ]
     return [replace(test, part=part) for part in parts]
 
 
@@ -135,7 +143,7 @@ def _without(run: Run, channels: Mapping[str, Chosen]) -> Run:
 def _stamps(test: Guessed) -> np.ndarray:
     """Time stamps (n,) in s of a test, from its first one on if they are dates."""
     if test.run.time is not None:
-        values = test.run.time.values * UNITS["time"][test.run.time.unit]
+        values = continued(test.run.time.values)[0] * UNITS["time"][test.run.time.unit]
         dated = test.run.time.unit in ("datetime", "excel", "epoch")
         return values - values[np.isfinite(values)][0] if dated else values
     first = next(iter(test.run.channels.values()))

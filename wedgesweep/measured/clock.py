@@ -13,6 +13,9 @@ SCATTERED = 0.5
 # A distance above this many steps may be a gap; the level of the stamps is compared over NEAR stamps at
 # either side of it, as a single late stamp shifts none of them. More than a SHARE of them is scatter.
 GAP, NEAR, SHARE = 1.5, 8, 0.1
+# Samples of a run, and the distance of its first stamp from that of the first run, over its span, where it
+# begins anew.
+FEWEST, ANEW = 50, 0.05
 # Stamps with more decimals count as not rounded.
 DECIMALS = 12
 
@@ -55,6 +58,25 @@ def fit_clock(stamps: np.ndarray, resolution: np.ndarray) -> Clock:
     index = np.rint((stamps - stamps[0]) / step).astype(int)
     off = np.concatenate([[0.0], np.minimum(np.abs(steps / step - 1.0), 1.0)])
     return Clock(float(stamps[0]), step, index, off, exact=False, even=False)
+
+
+def continued(stamps: np.ndarray) -> tuple[np.ndarray, float]:
+    """Stamps (n,) of runs that each begin anew, one behind the other, and the time between their beginnings.
+
+    That time is a power of ten, so that stamps of the file can be read from the others. It is 0 where stamps
+    go back to another time than that of their beginning.
+    """
+    known = np.flatnonzero(np.isfinite(stamps))
+    given = stamps[known]
+    starts = np.flatnonzero(np.diff(given) < 0.0) + 1
+    runs = np.split(given, starts)
+    span = max((float(np.ptp(run)) for run in runs if run.size), default=0.0)
+    anew = all(run.size >= FEWEST and abs(run[0] - given[0]) <= ANEW * np.ptp(run) for run in runs)
+    if not starts.size or not anew:
+        return stamps, 0.0
+    between = 10.0 ** np.ceil(np.log10((1.0 + SHARE) * span))
+    number = np.searchsorted(known[starts], np.arange(stamps.size), side="right")
+    return stamps + between * number, float(between)
 
 
 def counted_clock(stamps: np.ndarray, resolution: np.ndarray) -> Clock:

@@ -22,6 +22,8 @@ NO_NOISE = 1e-4
 MOST_TRIES = 30
 # Share of samples exactly at the extreme of a record, in runs of at least RUN, from which it is clipped.
 CLIPPED, RUN = 0.01, 3
+# Difference over their range by which samples of one value may differ once they were interpolated.
+SAME = 1e-9
 
 
 def warnings(test: TestRecord) -> list[str]:
@@ -32,6 +34,8 @@ def warnings(test: TestRecord) -> list[str]:
         if test.kind == STEADY
         for warning in _of_channel(test, samples)
     ]
+    if test.kind == LOOP and test.force is not None and (clipped := _flat_tops(test.force)):
+        found.append(f"force: {clipped}")
     if test.kind == LOOP and test.displacement is not None and goes_one_way(test.displacement):
         fault = (
             "displacement: it goes one way only, so that constant friction looks like the zero of the force"
@@ -133,8 +137,9 @@ def _far_off(test: TestRecord, samples: np.ndarray, noise: NoiseEstimate) -> tup
 
 
 def _flat_tops(samples: np.ndarray) -> str | None:
-    """Runs of samples exactly at the largest or smallest value."""
-    share = max(_share_in_runs(samples == end) for end in (samples.max(), samples.min()))
+    """Runs of samples exactly at the largest or smallest value, but for a few that were interpolated."""
+    ends, same = np.quantile(samples, [0.5 * CLIPPED, 1.0 - 0.5 * CLIPPED]), SAME * np.ptp(samples)
+    share = max(_share_in_runs(np.abs(samples - end) <= same) for end in ends)
     if share < CLIPPED:
         return None
     fault = f"{100.0 * share:.2g} % of its samples are exactly at its extreme"

@@ -10,7 +10,7 @@ import numpy as np
 
 from wedgesweep import readers
 from wedgesweep.hints import show
-from wedgesweep.measured.clock import resolution
+from wedgesweep.measured.clock import continued, resolution
 from wedgesweep.measured.declarations import units as units_of
 from wedgesweep.readers import ReadError, Table
 from wedgesweep.readers.table import DATETIME, Channel
@@ -176,6 +176,10 @@ def _stamps(column: Channel, time: Mapping[str, Any], remarks: list[str]) -> _St
         raise ValueError(fault)
     if time.get("interval"):
         values = np.cumsum(values) - values[:1]
+    values, between = continued(values)
+    if between:
+        runs = f"one every {between * size:g} s of from_s and to_s"
+        remarks.append(f"time begins anew in the file: its runs follow one another, {runs}")
     if unit in DATES:
         values = values - DAY / size * floor(first * size / DAY)
     return _Stamps(values * size, rounding, column.faults, unit in DATES)

@@ -45,7 +45,9 @@ def uff(file: Path, wanted: Wanted) -> dict[str, Channel | None]:
         if wanted(name, number):
             data = opened.read_sets(place)
             unit = str(data.get("ordinate_axis_units_lab", ""))
-            found[name] = Channel(data["data"], "" if unit == "NONE" else unit.strip(), np.asarray(data["x"]))
+            label = str(data.get("id1", "")).strip().removeprefix("NONE")
+            clock = np.asarray(data["x"])
+            found[name] = Channel(data["data"], "" if unit == "NONE" else unit.strip(), clock, label=label)
     return found
 
 

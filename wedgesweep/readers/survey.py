@@ -24,6 +24,8 @@ ROWS, NUMBERS = 500, 0.8
 FEWEST_ROWS = 8
 # Columns of a matrix that may be channels.
 WIDEST = 64
+# Group and name of a variable in it: group/name, Sheet!name, structure.name; not the unit m/s in brackets.
+GROUP = re.compile(r"([^\[(]*)[/!.]([^/!.].*)", re.DOTALL)
 # Cells of a header of words between spaces: a unit in brackets belongs to the word before it.
 WORDS = re.compile(r"[^\s\[(]+(?:\s*[\[(][^\])]*[\])])?")
 # A line that names a number, with its unit before or behind it; its greatest length; and factors of units.
@@ -45,11 +47,12 @@ class Everything(Wanted):
 
 @dataclass(frozen=True, eq=False)
 class Column:
-    """A channel as a file holds it; ``words``: the cells above it, from the top."""
+    """A channel as a file holds it; ``words``: the cells above it, from the top; ``group``: where it is."""
 
     name: Name
     words: tuple[str, ...]
     channel: Channel
+    group: str = ""
 
     @property
     def label(self) -> str:
@@ -102,8 +105,15 @@ def _variables(name: str, raw: Channel) -> list[Column]:
         except ValueError:
             continue
         if channel.values.size >= FEWEST_ROWS:
-            found.append(Column(part, (part,), channel))
+            group, inner = _within(part)
+            found.append(Column(part, (inner, *filter(None, [raw.label])), channel, group))
     return found
+
+
+def _within(name: str) -> tuple[str, str]:
+    """Group, sheet or structure of a variable, and its name there."""
+    found = GROUP.fullmatch(name)
+    return (found[1], found[2]) if found else ("", name)
 
 
 def _of_text(path: Path) -> Survey:

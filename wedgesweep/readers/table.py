@@ -17,7 +17,7 @@ Name = str | int
 DATETIME = "datetime"
 ISO = re.compile(r"\s*(\d{4}-\d\d-\d\d[T ]\d\d:\d\d|\d\d:\d\d:\d\d)")
 # The day of times without one.
-DAYLESS = "1970-01-01 "
+DAYLESS, DAYLESS_YEAR = "1970-01-01 ", 1970
 # The second of several columns with a name, and a column of a matrix.
 REPEATED, OF_A_MATRIX = re.compile(r"(.*)#(\d+)"), re.compile(r"(.*)\[(\d+)\]")
 BRACKETS = re.compile(r"(.*?)\s*[\[(]([^\[\]()]*)[\])]\s*")
@@ -35,13 +35,14 @@ class ReadError(ValueError):
 class Channel:
     """Samples (n,), NaN where missing; the unit that the file names, and a clock (s) of the channel's own.
 
-    ``faults``: of single samples, by their index.
+    ``faults``: of single samples, by their index; ``label``: what is measured, beside the channel's name.
     """
 
     values: np.ndarray
     unit: str = ""
     clock: np.ndarray | None = None
     faults: Mapping[int, str] = field(default_factory=dict)
+    label: str = ""
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,6 +99,9 @@ def seconds_of_dates(values: Sequence[Any]) -> tuple[np.ndarray, dict[int, str]]
         first = first or stamp.replace(hour=0, minute=0, second=0, microsecond=0)
         since = stamp - first
         seconds[row] = since.days * DAY + since.seconds + 1e-6 * since.microseconds
+    if first is not None and first.year == DAYLESS_YEAR:  # midnight may have passed
+        known = np.isfinite(seconds)
+        seconds[known] = np.unwrap(seconds[known], period=DAY)
     return seconds, faults
 
 

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from wedgesweep.files import read_bytes
+from wedgesweep.formatting import counted
 from wedgesweep.hints import hint, show
 from wedgesweep.readers import dialect as csv_dialect
 from wedgesweep.readers.dialect import Dialect
@@ -37,6 +38,9 @@ def read(path: Path, names: Sequence[Name], stated: Mapping[str, Any] | None = N
         for line in range(dialect.first, len(lines))
         if line not in repeated and not csv_dialect.is_skipped(lines[line])
     ]
+    missing = {*csv_dialect.MISSING, *stated.get("missing", ())}
+    summary = _rows_of_text([lines[line] for line in filled], dialect, missing)
+    filled = filled[: len(filled) - summary]
     if not filled:
         raise ReadError([f"{path}: no data below the header; write one line per sample"])
     columns, wide = _columns([lines[line] for line in filled], dialect)
@@ -44,14 +48,27 @@ def read(path: Path, names: Sequence[Name], stated: Mapping[str, Any] | None = N
         row, count = wide
         fault = f"{count} cells; the header has {dialect.width}, and so must each line"
         raise ReadError([f"{path}:{filled[row] + 1}: {fault}"])
-    missing = {*csv_dialect.MISSING, *stated.get("missing", ())}
     thousands = csv_dialect.THOUSANDS.get(stated.get("thousands", ""), "")
     channels = {
         name: _channel(cells, dialect.names[place], unit, (dialect.decimal, thousands), missing)
         for name, cells, place, unit in zip(names, columns, dialect.places, dialect.units, strict=True)
     }
-    form = [dialect.described(), f"{len(repeated)} lines of further headers left out" if repeated else ""]
+    form = [
+        dialect.described(),
+        f"{len(repeated)} lines of further headers left out" if repeated else "",
+        f"{counted(summary, 'line')} of text below the data left out" if summary else "",
+    ]
     return Table(channels, lambda sample: f"{path}:{filled[sample] + 1}", ", ".join(filter(None, form)))
+
+
+def _rows_of_text(lines: Sequence[str], dialect: Dialect, missing: set[str]) -> int:
+    """The number of lines at the end with a word in the first wanted column, as above means of columns."""
+    place = min(dialect.places)
+    for count, line in enumerate(reversed(lines)):
+        cell = (csv_dialect.split(line, dialect.delimiter)[place : place + 1] or [""])[0]
+        if cell in missing or not (cell[0].isalpha() or not any(map(str.isdigit, cell))):
+            return count
+    return len(lines)
 
 
 def _further_headers(lines: Sequence[str], dialect: Dialect) -> set[int]:
