@@ -253,6 +253,16 @@ def test_blocks_are_whole_cycles(tmp_path):
     assert covered[-1][1] == data.recordings[0].places.size
 
 
+@pytest.mark.filterwarnings("error")
+def test_a_loop_that_rests_all_along_says_nothing(tmp_path):
+    """As one of those that are considered as a next test."""
+    data = loop_data(read(write(tmp_path)))
+    resting = [replace(own, known=np.zeros(own.known.shape, bool)) for own in data.recordings]
+    data = replace(data, recordings=tuple(resting))
+    assert not data.size.any()
+    assert not data.zero(data.padded([own.force for own in data.recordings])).any()
+
+
 def test_nothing_is_missing_where_nothing_is(tmp_path):
     found = diagnosed(write(tmp_path), ["viscous_damping", "friction_level"])
     assert found.verdict == "nothing-missing"

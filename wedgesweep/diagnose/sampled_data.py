@@ -148,9 +148,13 @@ class SampledData(FitData):
         return found
 
     def zero(self, values: np.ndarray) -> np.ndarray:
-        """Zero of the sensor (..., T, 1) that fits values (..., T, m) best, measured less simulated ones."""
+        """Zero of the sensor (..., T, 1) that fits values (..., T, m) best, measured less simulated ones.
+
+        It is 0 where nothing is compared.
+        """
         left, unit = self._whitened(values), self._whitened(self.shifted)
-        return (left * unit).sum(-1, keepdims=True) / (unit**2).sum(-1, keepdims=True)
+        size = (unit**2).sum(-1, keepdims=True)
+        return (left * unit).sum(-1, keepdims=True) / np.where(size > 0.0, size, 1.0)
 
     def without_zero(self, values: np.ndarray) -> np.ndarray:
         """Values (..., T, m) less their best zero."""

@@ -107,9 +107,11 @@ class LoopData(SampledData):
 
     @cached_property
     def size(self) -> np.ndarray:
-        """Rms (T, m) of the measured force of a block about its mean, in N."""
-        force = np.where(self.seen, self.padded([own.force for own in self.recordings]), np.nan)
-        return np.broadcast_to(np.nanstd(force, axis=-1, keepdims=True), force.shape)
+        """Rms (T, m) of the measured force of a block about its mean, in N; 0 if the mass rests all along."""
+        count = np.maximum(self.seen.sum(axis=-1, keepdims=True), 1)
+        about = self.seen * (self.recorded - self.recorded.sum(axis=-1, keepdims=True) / count)
+        rms = np.sqrt((about**2).sum(axis=-1, keepdims=True) / count)
+        return np.broadcast_to(rms, self.seen.shape)
 
     @cached_property
     def seen(self) -> np.ndarray:
