@@ -14,7 +14,7 @@ from pathlib import Path
 
 from wedgesweep import measured, toml
 from wedgesweep.diagnose import diagnosis
-from wedgesweep.diagnose.progress import Step
+from wedgesweep.diagnose.work import Step
 from wedgesweep.effects import EFFECTS
 
 REPORT = Path(__file__).parent.parent / "docs" / "bench_diagnosis.txt"

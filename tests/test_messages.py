@@ -7,7 +7,7 @@ from tests import small_sweep
 from tests.command import invoke
 from wedgesweep.cli import cli, compiling, messages
 from wedgesweep.cli.progress import ProgressReport
-from wedgesweep.diagnose.progress import Step
+from wedgesweep.diagnose.work import Step
 
 FEW = small_sweep.CONFIG.replace("1.1, ", "").replace("[solver]", '[solver]\nmethod = "event-driven"')
 RUN = ("run", "few.toml", "--n-jobs", 1, "--fresh")

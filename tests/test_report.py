@@ -353,7 +353,7 @@ def test_sentence_says_what_the_budget_left_out():
     document, data = fixture_diagnosis.build("none-of-mine")
     complete = told(document, data)
     first = {"what": "pairs with one of the best single effects", "left_out": 60, "of": 76}
-    then = {"what": "pairs with an effect of the best pairs", "left_out": 20, "of": 20}
+    then = {"what": "forward selection", "left_out": 20, "of": 20}
     for untried, words in (
         ([first], f"before it tried {first['what']} (60 of 76)."),
         ([first, then], f"tried 80 more fits, first of all {first['what']} (60 of 76)."),

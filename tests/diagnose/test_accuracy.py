@@ -49,7 +49,7 @@ def test_what_was_planted_is_found(size, shape, seen):
     phase takes up one of the four numbers that the fundamentals of two channels are.
     """
     data = planted(size, shape)
-    found = accuracy.of_response(data, as_it_is(data), 378)
+    found = accuracy.of_responses([(data, as_it_is(data))], 378)
     assert found == pytest.approx(size / np.hypot(1.0, size) * np.sqrt(seen * 378.0 / 446.0), rel=0.04)
 
 

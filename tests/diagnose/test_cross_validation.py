@@ -83,7 +83,7 @@ def test_a_model_that_fits_nothing_predicts_as_accurately_as_it_explains():
     both = accuracy.of_responses([(data, evaluation)] * 2, 2 * base.dof)
     found = cross_validation.held_out_accuracy(base, Predictor(serial))
     assert found == pytest.approx(both, rel=1e-2)
-    assert found == pytest.approx(accuracy.of_response(data, evaluation, base.dof), rel=0.05)
+    assert found == pytest.approx(accuracy.of_responses([(data, evaluation)], base.dof), rel=0.05)
 
 
 def test_a_fit_is_predicted_once():

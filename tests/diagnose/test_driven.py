@@ -1,7 +1,5 @@
 """Transients under a recorded input: sweeps, bumps and random motion of the base, or a force."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -188,31 +186,6 @@ def test_bristles_that_were_at_work_before_a_window_are_simulated_from_there(tmp
     assert 0.0 < search.data.windows[0].starts_at < search.data.windows[0].begins
     fit = single_fit(search, "presliding", base_fit(search).base.fit).explanation.fit
     assert (fit.evaluation.chi2_by_test < 1.3 * search.data.dof).all()
-
-
-@pytest.mark.acceptance
-def test_a_mass_that_stuck_before_a_window_has_stuck_for_as_long_in_its_simulation(tmp_path):
-    """Static friction has grown since the record began: it decides when the mass breaks away."""
-    ageing = {"ageing": {"rate": 0.1, "time": 0.02}}
-    data = transient_data(read(write(tmp_path, [1e-3 * chirp()], ageing, noise=(2e-5, 1e-3))))
-    model = Search.of(data, ["ageing"]).model("ageing")
-    start = model.start(None, model.hypothesis.at({"ageing": {"rate": 0.1, "time_s": 0.02}}))
-    # It breaks away in the second window, and was at rest where the record began.
-    at_rest = np.where(np.arange(data.tests)[:, None] < 2, 0.0, start.nuisance)
-    here = model.evaluate(replace(start, nuisance=at_rest))
-    assert (here.chi2_by_test < data.dof).all()
-    first, second, third = (own.starts_at for own in data.windows)
-    assert first == pytest.approx(second)
-    assert third > second + 5.0
-
-
-def test_a_window_in_which_a_mass_stays_at_rest_is_not_simulated_from_where_it_last_slipped(tmp_path):
-    """A record that begins with a long rest would be simulated from its start once for each window."""
-    slow = np.where(0.7 * TIMES[-1] > TIMES, 0.01, 1.0) * 1e-3 * chirp()
-    data = transient_data(read(write(tmp_path, [slow], noise=(2e-6, 1e-4))))
-    first, resting, slipping = data.windows
-    assert resting.begins - resting.starts_at == pytest.approx(first.grid.lead * first.step, rel=0.5)
-    assert slipping.starts_at < resting.begins
 
 
 def test_what_happens_between_table_and_side_frame_shows_in_the_motion_against_the_side_frame(tmp_path):

@@ -90,7 +90,7 @@ class Decays(FitData):
     def noise_floor(self):
         return np.sqrt(np.mean(STD**2 / self.measured.var(axis=1)))
 
-    def nuisances(self, effects, point):
+    def nuisances(self, effects):
         return (NuisanceParameter(step=1e-3, max_step=0.1),)
 
     def start(self):

@@ -5,8 +5,7 @@ import pytest
 from tests.diagnose.synthetic import LAG, drawn, searched
 from wedgesweep.diagnose.cross_validation import Predictor
 from wedgesweep.diagnose.explanation import Explanation
-from wedgesweep.diagnose.forward import forward_selection
-from wedgesweep.diagnose.ladder import ladder
+from wedgesweep.diagnose.ladder import forward_selection, ladder
 from wedgesweep.diagnose.least_squares import minimise
 
 CANDIDATES = ("velocity_lag", "displacement_gain", "bolster_mass", "bolster_stiffness")

@@ -11,7 +11,7 @@ from tests.diagnose.answers import diagnosed, is_told
 from wedgesweep.config import parse
 from wedgesweep.diagnose.explanation import POSSIBLE
 from wedgesweep.diagnose.loop import motion_noise
-from wedgesweep.diagnose.loop.from_measurement import loop_data
+from wedgesweep.diagnose.loop.loop_data import loop_data
 from wedgesweep.diagnose.search import Search, base_fit
 from wedgesweep.diagnose.smoothing import (
     LowPass,

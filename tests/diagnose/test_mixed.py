@@ -134,7 +134,7 @@ def test_the_start_of_a_frame_has_columns_of_its_own_beside_steady_tests(tmp_pat
     assert steady == [True] + 7 * [False]
     assert windows == [[False, True, True, False, False, False, True, True]] * 3
     assert data.extra_nuisances(("fixture_resonance",)).tolist() == [0, 2, 2, 2]
-    assert len(data.nuisances((), start)) == 3
+    assert len(data.nuisances(())) == 3
 
 
 def test_a_channel_that_one_of_the_kinds_needs_is_missing(tmp_path):

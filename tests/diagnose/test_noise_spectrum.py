@@ -5,7 +5,6 @@ import pytest
 
 from tests.diagnose.answers import diagnosed
 from tests.diagnose.test_transients import HIDDEN, coloured, write
-from wedgesweep.diagnose import repeats
 from wedgesweep.diagnose.loop.force_noise import FROM_MOTION
 from wedgesweep.diagnose.noise_bins import noise_of_record
 from wedgesweep.diagnose.noise_spectrum import (
@@ -17,6 +16,7 @@ from wedgesweep.diagnose.noise_spectrum import (
     fit_spectra,
     of_noise,
     periodogram,
+    repeat_differences,
 )
 from wedgesweep.diagnose.transient.from_measurement import transient_data
 from wedgesweep.diagnose.transient.noise import continuous
@@ -68,7 +68,7 @@ def test_what_does_not_repeat_is_noise():
     for gain, lag in ((1.0, 0), (1.03, 4), (0.98, -3)):
         later = np.exp(-0.4 * (TIME - lag / RATE)) * np.cos(2.0 * np.pi * 2.5 * (TIME - lag / RATE))
         records.append(gain * later + 0.1 * gain + STD * coloured(rng, SIZE, 0.9))
-    found = of_noise(repeats.differences(records), FROM_REPEATS)
+    found = of_noise(repeat_differences(records), FROM_REPEATS)
     assert found.std == pytest.approx(STD, rel=0.3)
     assert found.correlation == pytest.approx(0.9, abs=0.08)
 

@@ -15,8 +15,7 @@ TRUTH = {"preload": {"force": 0.3}, "friction_level": {"scale": 0.85}}
 CANDIDATES = (*TRUTH, "bolster_mass")
 
 
-def test_an_effect_that_shows_only_beside_another_is_tried_beside_all(monkeypatch):
-    monkeypatch.setattr(pairs, "LEADING", 1)
+def test_pairs_are_found_whose_effects_do_not_lead_alone():
     search, base, singles, scans = single_fits(base_fit(Search.of(drawn(TRUTH), CANDIDATES)))
     assert min(singles, key=lambda each: each.fit.chi2).effects == ("bolster_mass",)
     best = pairs.fit_pairs(search, base.fit, singles, scans)[0]

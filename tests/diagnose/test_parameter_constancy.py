@@ -8,8 +8,7 @@ import pytest
 from tests.diagnose.synthetic import AMPLITUDES, FREQUENCIES, drawn, searched
 from wedgesweep.diagnose import accuracy, ladder, stages, verdict
 from wedgesweep.diagnose.cross_validation import Predictor
-from wedgesweep.diagnose.parameter_constancy import _p_constant, parameter_constancy
-from wedgesweep.diagnose.projector import Projector
+from wedgesweep.diagnose.parameter_constancy import Projector, _p_constant, parameter_constancy
 from wedgesweep.diagnose.search import Search
 
 # Sessions of twelve tests; of one that wears the last ones differ from the first by a little.

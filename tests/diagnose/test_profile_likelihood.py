@@ -136,8 +136,3 @@ def test_nothing_is_tried_far_beyond_an_interval(monkeypatch):
     end, tried = end_of_a_switch(monkeypatch, 0.01, lambda x: RISE * (x / 0.11) ** 8)
     assert end == pytest.approx(0.1196, abs=1e-3)
     assert len(tried) == 3
-
-
-def test_where_the_curvature_of_a_switch_tells_nothing_its_end_is_bisected(monkeypatch):
-    end, _ = end_of_a_switch(monkeypatch, 5.0, lambda x: 0.1 if x < 0.2 else 100.0, value=1e-4)
-    assert 0.2 <= end < 0.27

@@ -3,8 +3,8 @@
 from tests.diagnose.synthetic import drawn
 from wedgesweep.ablation import without
 from wedgesweep.diagnose import stages
-from wedgesweep.diagnose.changes import NO_BEST, Best, Change, summary
 from wedgesweep.diagnose.search import Search
+from wedgesweep.diagnose.work import NO_BEST, Best, Change, summary
 
 # It is no candidate.
 HIDDEN = {"bolster_mass": {"scale": 1.05}}

@@ -375,10 +375,9 @@ def refit(monkeypatch):
     def refit(base, finding, found, tight=lambda fit: fit, further=None):
         monkeypatch.setattr(diagnosis, "tight_refit", tight)
         monkeypatch.setattr(diagnosis, "minimise", lambda model, start: further)
-        monkeypatch.setattr(diagnosis, "from_other_nuisances", lambda fit: fit)
         monkeypatch.setattr(diagnosis, "profile_likelihood", lambda fit, each: fit)
         monkeypatch.setattr(diagnosis, "Explanation", priced)
-        search = SimpleNamespace(each=map, tried=lambda stage, fit, change: change(fit))
+        search = SimpleNamespace(each=map)
         return diagnosis.refit_cause(search, base, finding, found, verdict.DEFAULT)
 
     return refit

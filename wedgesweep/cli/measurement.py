@@ -133,7 +133,7 @@ def _transient_noise(windows: "Sequence[RecordWindow]") -> str:
 
 def _loop_rows(measurement: "Measurement") -> list[tuple[str, ...]]:
     """What is compared of each loop."""
-    from wedgesweep.diagnose.loop.from_measurement import loop_data
+    from wedgesweep.diagnose.loop.loop_data import loop_data
 
     recordings = loop_data(measurement).recordings
     for test, own in zip(measurement.tests, recordings, strict=True):

@@ -43,7 +43,7 @@ class ProgressReport:
 
     def step(self, step: str) -> None:
         """Show a step of a diagnosis; one that is a ``diagnose.progress.Step`` tells how far its stage is."""
-        from wedgesweep.diagnose.progress import Step
+        from wedgesweep.diagnose.work import Step
 
         if not isinstance(step, Step):
             self.stop()

@@ -17,7 +17,7 @@ from scipy.special import chdtri
 from wedgesweep.diagnose.evaluation import Evaluation
 from wedgesweep.diagnose.explanation import ADEQUATE
 from wedgesweep.diagnose.fit_data import FitData
-from wedgesweep.diagnose.least_squares import minimise
+from wedgesweep.diagnose.least_squares import BRIEF, minimise
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.parameter_constancy import parameter_constancy
 
@@ -27,8 +27,6 @@ SMALLEST, LARGEST, PRECISION = 1e-6, 100.0, 1e-3
 ROUGHLY = 0.1
 # A fit is repeated at its accuracy until that improves by less than this share, at most this many times.
 GAINED, ROUNDS = 0.01, 3
-# Iterations of such a fit.
-ITERATIONS = 12
 
 
 class Accuracy(NamedTuple):
@@ -55,13 +53,8 @@ def _smallest(over: Callable[[float], float], precision: float) -> float:
     return exp(brentq(lambda size: over(exp(size)), log(SMALLEST), log(LARGEST), xtol=precision))
 
 
-def of_response(data: FitData, evaluation: Evaluation, dof: float) -> float:
-    """Accuracy of what was simulated, pulls on priors left out; inf if a response does not exist."""
-    return of_responses([(data, evaluation)], dof)
-
-
 def of_responses(parts: Sequence[tuple[FitData, Evaluation]], dof: float) -> float:
-    """Accuracy of several simulations together."""
+    """Accuracy of what was simulated, pulls on priors left out; inf if a response does not exist."""
     if not all(evaluation.found for _, evaluation in parts):
         return inf
 
@@ -99,7 +92,7 @@ def refined(fit: Fit) -> Accuracy:
     dominate it, and take nuisance parameters far from stated.
     """
     best = Accuracy(of_fit(fit), fit)
-    size = min(best.size, of_response(fit.model.data, fit.evaluation, fit.dof))
+    size = min(best.size, of_responses([(fit.model.data, fit.evaluation)], fit.dof))
     for _ in range(ROUNDS):
         if size in (0.0, inf):
             break
@@ -122,4 +115,4 @@ def _minimised(fit: Fit, size: float) -> Fit:
     here = data.compared_again(fit.evaluation)
     x = np.r_[fit.x[: model.size], model.uncertain.mean]
     as_stated = model.evaluate(replace(data.as_stated(fit.point), x=x))
-    return minimise(model, min(here, as_stated, key=lambda each: each.chi2), ITERATIONS)
+    return minimise(model, min(here, as_stated, key=lambda each: each.chi2), BRIEF)

@@ -7,11 +7,11 @@ what it leaves would be taken for a cause that no effect describes.
 
 from dataclasses import replace
 
-from wedgesweep.diagnose.changes import SLIGHT
 from wedgesweep.diagnose.explanation import NOTABLE, Explanation, penalised
 from wedgesweep.diagnose.least_squares import minimise
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.search import LEADING, Explained
+from wedgesweep.diagnose.work import SLIGHT
 
 # A number is at an end of its range if it is closer to it than this share of the range's width.
 AT_END = 1e-3

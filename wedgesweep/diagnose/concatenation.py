@@ -195,10 +195,10 @@ class Concatenation(FitData):
         """Natural units of the part whose tests have the largest travel."""
         return max(self._each("units"), key=lambda units: units.length)
 
-    def nuisances(self, effects: Iterable[str], point: Point) -> tuple[NuisanceParameter, ...]:
+    def nuisances(self, effects: Iterable[str]) -> tuple[NuisanceParameter, ...]:
         effects, found = tuple(effects), [UNUSED] * self.layout.size[1]
-        for part, columns, own in zip(self.parts, self.layout.columns, self._points(point), strict=True):
-            for column, nuisance in zip(columns, part.nuisances(effects, own), strict=False):
+        for part, columns in zip(self.parts, self.layout.columns, strict=True):
+            for column, nuisance in zip(columns, part.nuisances(effects), strict=False):
                 found[column] = nuisance
         while len(found) > self.layout.size[0] and found[-1] is UNUSED:
             found.pop()
@@ -294,14 +294,6 @@ class Concatenation(FitData):
         shown = {name for own in self._each("candidates", effects) for name in own}
         return tuple(name for name in effects if name in shown)
 
-    def other_nuisances(self, model: Model, evaluation: Evaluation) -> np.ndarray | None:
-        own = zip(self.parts, self._evaluations(evaluation), strict=True)
-        found = [part.other_nuisances(model.on(part), each) for part, each in own]
-        if all(each is None for each in found):
-            return None
-        points = zip(found, self._points(evaluation.point), strict=True)
-        return self.layout.joined([point.nuisance if own is None else own for own, point in points], 0.0)
-
     def search_nuisances(self, model: Model, points: Sequence[Point]) -> list[Evaluation]:
         by_point = [self._points(each) for each in points]
         for i, part in enumerate(self.parts):
@@ -351,4 +343,4 @@ def _changes(
 
 
 def _same(one: Point, other: Point) -> bool:
-    return np.array_equal(one.x, other.x) and np.array_equal(one.nuisance, other.nuisance, equal_nan=True)
+    return np.array_equal(one.x, other.x) and np.array_equal(one.nuisance, other.nuisance)

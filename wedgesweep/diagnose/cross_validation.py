@@ -11,12 +11,12 @@ from wedgesweep.diagnose import accuracy
 from wedgesweep.diagnose.evaluation import Evaluation, Point
 from wedgesweep.diagnose.explanation import parameter_penalty
 from wedgesweep.diagnose.fit_data import FitData
-from wedgesweep.diagnose.least_squares import minimise, subset_fit
+from wedgesweep.diagnose.least_squares import BRIEF, minimise, subset_fit
 from wedgesweep.diagnose.model import Fit, Model
 from wedgesweep.diagnose.normal_equations import normal_equations
 
-# Iterations of a fit to the remaining tests, and steps of the nuisance parameters of held-out ones.
-ADAPT, LOCAL = 6, 4
+# Steps of the nuisance parameters of held-out tests.
+LOCAL = 4
 # Largest step of a nuisance parameter of a held-out test.
 LOCAL_STEP = 0.3
 # Bootstrap samples, and the least number of tests for which an interval means anything.
@@ -191,7 +191,7 @@ def _predicted(fit: Fit, scheme: str, rows: np.ndarray) -> Prediction:
     """
     trained = subset_fit(fit, np.setdiff1d(np.arange(fit.model.data.tests), rows))
     if len(fit.x):
-        trained = supported(minimise(trained.model, trained.evaluation, ADAPT))
+        trained = supported(minimise(trained.model, trained.evaluation, BRIEF))
     part = subset_fit(fit, rows)
     part = replace(part, model=replace(part.model, hypothesis=trained.model.hypothesis))
     evaluation = with_own_nuisances(part.model, replace(part.point, x=trained.x))
@@ -208,7 +208,7 @@ def supported(trained: Fit) -> Fit:
         rest = tuple(name for name in trained.effects if name != effect)
         model = replace(trained.model, hypothesis=replace(trained.model.hypothesis, effects=rest), held=None)
         x = model.hypothesis.at(trained.values)
-        less = minimise(model, model.evaluate(model.start(trained, x)), ADAPT)
+        less = minimise(model, model.evaluate(model.start(trained, x)), BRIEF)
         saved = parameter_penalty(model.data) * (trained.model.size - model.size)
         if less.chi2 < trained.chi2 + saved:
             trained = less

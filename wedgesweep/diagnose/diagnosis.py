@@ -6,28 +6,35 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 
-from wedgesweep.diagnose import forward, record_by_record, score_test, verdict, work
+from wedgesweep.diagnose import score_test, verdict, work
 from wedgesweep.diagnose.calibration import calibrate
-from wedgesweep.diagnose.changes import Best, Change
 from wedgesweep.diagnose.concatenation import joined
 from wedgesweep.diagnose.cross_validation import Gain, Predictor, cross_validate
 from wedgesweep.diagnose.empirical.stage import EmpiricalForce, empirical_force
 from wedgesweep.diagnose.explanation import Explanation, best_of_each, penalised
 from wedgesweep.diagnose.fit_data import FitData
-from wedgesweep.diagnose.ladder import Level, ladder, rough_ladder
-from wedgesweep.diagnose.least_squares import from_other_nuisances, minimise, tight_refit
-from wedgesweep.diagnose.loop.from_measurement import loop_data
+from wedgesweep.diagnose.ladder import (
+    FORWARD,
+    RECORD_BY_RECORD,
+    ByRecord,
+    Level,
+    forward_selection,
+    ladder,
+    record_by_record,
+    rough_ladder,
+)
+from wedgesweep.diagnose.least_squares import minimise, tight_refit
+from wedgesweep.diagnose.loop.loop_data import loop_data
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.next_test.recommend import NextTest, recommend
 from wedgesweep.diagnose.profile_likelihood import profile_likelihood
-from wedgesweep.diagnose.record_by_record import ByRecord
 from wedgesweep.diagnose.score_test import Score
-from wedgesweep.diagnose.search import OTHER_NUISANCES, Explained, Search, base_fit, quiet, single_fits
+from wedgesweep.diagnose.search import Explained, Search, base_fit, quiet, single_fits
 from wedgesweep.diagnose.stages import PAIRS, REFINEMENT, taken
 from wedgesweep.diagnose.steady.from_measurement import harmonic_data
 from wedgesweep.diagnose.transient.from_measurement import transient_data
 from wedgesweep.diagnose.verdict import Finding, Thresholds
-from wedgesweep.diagnose.work import Untried
+from wedgesweep.diagnose.work import Best, Change, Untried
 from wedgesweep.effects import EFFECTS, SCALES, acting, candidates
 from wedgesweep.effects.base import OSCILLATOR
 from wedgesweep.effects.empirical_force import NAME as FORCE
@@ -302,7 +309,7 @@ def _with_more_effects(course: Course) -> Diagnosis:
     found = course.found
     if found.finding.verdict not in ABSTAINING:
         return found
-    levels = forward.forward_selection(course.search, found.explanations, found.ladder, course.predict)
+    levels = forward_selection(course.search, found.explanations, found.ladder, course.predict)
     return replace(found, ladder=levels)
 
 
@@ -310,7 +317,7 @@ def _with_records_by_themselves(course: Course) -> Diagnosis:
     found = course.found
     if found.finding.verdict not in ABSTAINING or len(found.ladder) < 2:
         return found
-    return replace(found, by_record=record_by_record.record_by_record(course.search, found.ladder[1]))
+    return replace(found, by_record=record_by_record(course.search, found.ladder[1]))
 
 
 def _with_empirical_force(course: Course) -> Diagnosis:
@@ -384,7 +391,7 @@ def refit_cause(
         finding = verdict.decide(base, found, thresholds)
     done: list[Explanation] = []
     while finding.best is not None and not any(finding.best is each for each in done):
-        fit = tight_refit(search.tried(OTHER_NUISANCES, finding.best.fit, from_other_nuisances))
+        fit = tight_refit(finding.best.fit)
         # Without a cause there is no interval to report.
         if finding.cause is not None or search.budget.left > 0.0:
             fit = profile_likelihood(fit, search.each)
@@ -426,8 +433,8 @@ STEPS: dict[str, Callable[[Course], Diagnosis]] = {
     "intervals": _with_intervals,
     "held-out tests": _held_out,
     "accuracy": _rated,
-    forward.NAME: _with_more_effects,
-    record_by_record.NAME: _with_records_by_themselves,
+    FORWARD: _with_more_effects,
+    RECORD_BY_RECORD: _with_records_by_themselves,
     "empirical force": _with_empirical_force,
     "scores": _scored,
     "next test": _with_next_test,

@@ -29,7 +29,7 @@ class Point:
     """One guess of everything that is fitted by simulation.
 
     ``x`` (k + u,): parameters of the hypothesis, then uncertain parameters of the base model as scales.
-    ``nuisance`` (T, N): nuisance parameters of each test, those with a prior first; NaN where not fitted.
+    ``nuisance`` (T, N): nuisance parameters of each test, those with a prior first.
     ``warm``: a WarmStart.
     """
 

@@ -141,8 +141,8 @@ class FitData(Protocol):
         return BENCH
 
     @abstractmethod
-    def nuisances(self, effects: Iterable[str], point: Point) -> tuple[NuisanceParameter, ...]:
-        """The first L nuisance parameters of a point: those that are fitted by simulation."""
+    def nuisances(self, effects: Iterable[str]) -> tuple[NuisanceParameter, ...]:
+        """The first L nuisance parameters: those that are fitted by simulation beside some effects."""
 
     @abstractmethod
     def start(self) -> tuple[np.ndarray, WarmStart]:
@@ -220,13 +220,6 @@ class FitData(Protocol):
     def extra_nuisances(self, effects: Iterable[str]) -> np.ndarray:
         """Number of nuisance parameters (T,) without a prior that these effects add to each test."""
         return np.zeros(self.tests, int)
-
-    def other_nuisances(self, model: "Model", evaluation: Evaluation) -> np.ndarray | None:
-        """Better nuisance parameters (T, N), if a fit cannot reach them from an evaluation by small steps.
-
-        None if there are none to try.
-        """
-        return None
 
     def aligned_to(self, evaluation: Evaluation) -> Self:
         """The data, with what an evaluation tells of the records' start (the phase of the input there)."""

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from wedgesweep.diagnose.evaluation import Evaluation, Point
+from wedgesweep.diagnose.evaluation import Evaluation
 from wedgesweep.diagnose.model import Model
 
 # Step as a share of a parameter's scale. Over shorter steps the error of the simulation would look like
@@ -34,12 +34,12 @@ class Derivatives(NamedTuple):
     found: np.ndarray
 
 
-def step_sizes(model: Model, point: Point, near: Jacobian | None = None) -> np.ndarray:
+def step_sizes(model: Model, near: Jacobian | None = None) -> np.ndarray:
     """Steps of differences for all parameters and fitted nuisance parameters, shape (k + u + L,).
 
     ``near``: derivatives at a point nearby; steps are shortened where these predict too large a change.
     """
-    sizes = np.r_[STEP * model.scale, [each.step for each in model.data.nuisances(model.effects, point)]]
+    sizes = np.r_[STEP * model.scale, [each.step for each in model.data.nuisances(model.effects)]]
     if near is None:
         return sizes
     by_nuisance = near.by_nuisance[..., model.data.eliminated :]
@@ -68,7 +68,7 @@ def jacobian(
         Derivatives at a point nearby, see ``step_sizes``.
     """
     point, data, size = evaluation.point, model.data, len(evaluation.point.x)
-    steps = side * step_sizes(model, point, near)
+    steps = side * step_sizes(model, near)
     unbounded = [np.inf] * (len(steps) - size)
     low, high = np.r_[model.low - point.x, np.negative(unbounded)], np.r_[model.high - point.x, unbounded]
     free = (low < high) & (steps != 0.0)
@@ -93,8 +93,8 @@ def jacobian(
 
 def accurate_jacobian(model: Model, evaluation: Evaluation, side: float = 1.0) -> Jacobian:
     """Derivatives at an evaluation, taken again by shorter steps if a response has changed too much."""
-    point, first = evaluation.point, jacobian(model, evaluation, side)
-    short_enough = np.array_equal(step_sizes(model, point, first), step_sizes(model, point))
+    first = jacobian(model, evaluation, side)
+    short_enough = np.array_equal(step_sizes(model, first), step_sizes(model))
     return first if short_enough else jacobian(model, evaluation, side, first)
 
 

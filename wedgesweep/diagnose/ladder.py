@@ -1,21 +1,46 @@
-"""The accuracy ladder: how well the tests are explained by no effect, by one, by two, by more."""
+"""The accuracy ladder: how well the tests are explained by no effect, by one, by two, by more.
 
-from collections.abc import Sequence
+What loads a contact (a pressure, a weight, a temperature) may differ from record to record, and the model on
+trial not know it. Then one number in all records leaves that difference, and a right cause looks inaccurate:
+leading explanations are also fitted to each record by itself (``record_by_record``).
+
+On a damper rig several causes at once are the rule. Where neither one effect nor two explain the tests, the
+effects that are added next, with the gain of each, say what the model lacks; they are not named as causes.
+Tests that are left out of the fits are the judge, as each further effect fits the others better
+(``forward_selection``).
+"""
+
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import inf
+from typing import NamedTuple
+
+import numpy as np
 
 from wedgesweep.diagnose import accuracy, verdict
 from wedgesweep.diagnose.cross_validation import Predictor, held_out_accuracy
-from wedgesweep.diagnose.explanation import ADEQUATE, Explanation
+from wedgesweep.diagnose.explanation import ADEQUATE, NOTABLE, Explanation
+from wedgesweep.diagnose.least_squares import BRIEF, minimise, subset_fit
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.search import Search
-from wedgesweep.effects import EFFECTS
+from wedgesweep.effects import EFFECTS, go_together
 
 # The most accurate explanations of each size are refined, that is fitted again at their accuracy: at most so
 # many at a time, and at first only those within this factor of the best.
 REFINED, FACTOR = 6, 3.0
 # Number of best explanations of a size that must be refined, as their accuracies are compared.
 COMPARED = 2
+# Names of the steps after the ladder.
+RECORD_BY_RECORD, FORWARD = "record by record", "forward selection"
+# The most accurate explanations that these steps follow to the end.
+FOLLOWED = 3
+# Numbers of each record are told if they leave this share of what one number in all records leaves: less is
+# gained by any effect, as several numbers fit better than one.
+LEFT = 2.0 / 3.0
+# Effects beside each other, at most: with more, none of a rig's few tests would be left to judge them.
+MOST = 5
+# Work that forward selection may spend, as a share of the work of the whole search.
+SHARE = 1.0 / 6.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,7 +120,7 @@ def ladder(
 def rated_where_it_ended(each: Explanation) -> Rated:
     """An explanation with the accuracy of its fit as it is."""
     fit = each.fit
-    return Rated(each, accuracy.of_response(fit.model.data, fit.evaluation, fit.dof), fit)
+    return Rated(each, accuracy.of_responses([(fit.model.data, fit.evaluation)], fit.dof), fit)
 
 
 def level_of(search: Search, rough: Sequence[Rated], predict: Predictor) -> Level:
@@ -143,3 +168,88 @@ def _refined(each: Rated) -> Rated:
 def by_accuracy(each: Rated) -> tuple[float, float]:
     """Key by which explanations of a size are ranked: accuracy, then penalised chi-squared."""
     return each.accuracy, each.explanation.penalised
+
+
+class ByRecord(NamedTuple):
+    """An explanation with numbers of its own in each record.
+
+    ``accuracy``: of the fits together; ``fits``: to each record, after its name.
+    """
+
+    effects: tuple[str, ...]
+    accuracy: float
+    fits: tuple[tuple[str, Fit], ...]
+
+
+def record_by_record(search: Search, level: Level) -> tuple[ByRecord, ...]:
+    """The leading explanations of a level by themselves in each record, the most accurate first.
+
+    None where that explains the records hardly better, or where there is one record.
+    """
+    records = search.data.tests_of_records
+    if len(records) < 2:
+        return ()
+    found = search.each(lambda each: _of_records(each, records), level.rated[:FOLLOWED])
+    found = sorted(found, key=lambda each: each.accuracy)
+    return tuple(found) if found[0].accuracy < LEFT * level.best.accuracy else ()
+
+
+def _of_records(rated: Rated, records: Sequence[tuple[str, np.ndarray]]) -> ByRecord:
+    fits = [(name, accuracy.refined(subset_fit(rated.fit, rows)).fit) for name, rows in records]
+    together = [(fit.model.data, fit.evaluation) for _, fit in fits]
+    dof = sum(fit.dof for _, fit in fits)
+    return ByRecord(rated.effects, accuracy.of_responses(together, dof), tuple(fits))
+
+
+def forward_selection(
+    search: Search, explanations: Sequence[Explanation], levels: Sequence[Level], predict: Predictor
+) -> tuple[Level, ...]:
+    """The levels of the ladder, and one more for each effect that is added to its best pair.
+
+    None is added where no pair was fitted, or where it predicts hardly better than one effect.
+    """
+    found = list(levels)
+    if len(found[-1].best.effects) < 2 or not _gained(*found[-2:]):
+        return tuple(found)
+    singles = {each.effects[0]: each.fit for each in explanations if len(each.effects) == 1}
+    search.budget.grant(SHARE * search.budget.total)
+    while len(found[-1].best.effects) < MOST:
+        rated = _with_one_more(search, found[-1].best, singles)
+        level = level_of(search, rated, predict) if rated else None
+        if level is None or not _gained(found[-1], level):
+            break
+        found.append(level)
+    return tuple(found)
+
+
+def _gained(before: Level, after: Level) -> bool:
+    """Whether a level predicts tests left out clearly better than the one with an effect less."""
+    was, now = before.best.held_out, after.best.held_out
+    return was is not None and now is not None and now < NOTABLE * was
+
+
+def _with_one_more(search: Search, best: Rated, singles: Mapping[str, Fit]) -> list[Rated]:
+    """The best explanation with each other effect that can go with it; only the leading ones, best first."""
+    others = [
+        single
+        for name, single in singles.items()
+        if name not in best.effects and go_together((*best.effects, name))
+    ]
+    begun = search.each_affordable(lambda single: _begun(search, best, single), others, FORWARD)
+    leading = sorted(begun, key=lambda fit: fit.chi2)[:FOLLOWED]
+    found = search.each(lambda fit: rated_where_it_ended(Explanation(fit)), leading)
+    return sorted(found, key=by_accuracy)
+
+
+def _begun(search: Search, best: Rated, single: Fit) -> Fit:
+    """A fit under the model error of the best explanation, with one effect more.
+
+    The new effect starts as it was fitted by itself, or so weak that it changes nothing.
+    """
+    fit = best.fit
+    model = search.model(*fit.effects, *single.effects)
+    model = model.on(fit.model.data.with_model_error(best.accuracy))
+    alone, hypothesis = single.x[: single.model.size], single.model.hypothesis
+    starts = [np.r_[fit.x[: fit.model.size], x] for x in (alone, hypothesis.near_neutral(alone))]
+    evaluations = model.evaluate_all([model.start(fit, x) for x in starts])
+    return minimise(model, min(evaluations, key=lambda each: each.chi2), BRIEF)

@@ -72,7 +72,7 @@ def lm_step(model: Model, point: Point, equations: NormalEquations, damping: flo
     limited = bool((aim != x + step).any())
     step = aim - x
     local = equations.local_step(step, damping)
-    fitted = [each.max_step for each in model.data.nuisances(model.effects, point)]
+    fitted = [each.max_step for each in model.data.nuisances(model.effects)]
     longest_local = np.r_[[np.inf] * equations.eliminated, fitted]
     limited = limited or bool((np.abs(local) > longest_local).any())
     local = np.clip(local, -longest_local, longest_local)
@@ -120,19 +120,6 @@ def subset_fit(fit: Fit, rows: np.ndarray) -> Fit:
     """The same point on some of a fit's tests."""
     model = Model(fit.model.data.subset(rows), fit.model.hypothesis)
     return Fit(model, model.evaluate(fit.point.subset(rows)), fit.covariance, fit.converged)
-
-
-def from_other_nuisances(fit: Fit) -> Fit:
-    """The fit, or a better one from nuisance parameters that it could not reach by itself.
-
-    See ``FitData.other_nuisances``.
-    """
-    model, here = fit.model, fit.evaluation
-    found = model.data.other_nuisances(model, here) if here.found else None
-    if found is None:
-        return fit
-    again = minimise(model, model.evaluate(replace(fit.point, nuisance=found)))
-    return min(fit, again, key=lambda each: each.chi2)
 
 
 def _covariance(matrix: np.ndarray) -> np.ndarray:

@@ -7,10 +7,10 @@ from functools import cached_property
 import numpy as np
 from scipy.special import chdtrc
 
-from wedgesweep.diagnose.changes import Best
 from wedgesweep.diagnose.evaluation import Comparison, Evaluation, Point, Scenario, best_evaluation_per_test
 from wedgesweep.diagnose.fit_data import FitData
 from wedgesweep.diagnose.fit_parameters import Hypothesis, Values
+from wedgesweep.diagnose.work import Best
 from wedgesweep.uncertain import UncertainNumbers, uncertain_numbers
 
 # Relative errors of simulations: negligible beside noise of 4 %, negligible in derivatives as well, and small

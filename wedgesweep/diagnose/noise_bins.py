@@ -18,6 +18,7 @@ from wedgesweep.diagnose.noise_spectrum import (
     fit_spectra,
     periodogram,
 )
+from wedgesweep.diagnose.smoothing import LEAST_KEPT
 
 # A bin with this many times the power of the noise is part of a line, as are this many neighbours on either
 # side. What depends on one another, as noise and lines, is estimated in turn, in ROUNDS.
@@ -32,8 +33,8 @@ AMPLE = Choice(2.0)
 UPWARDS = 4
 # Bands per octave, and ratio of the power of two bands an octave apart beyond which the lower one is motion.
 BANDS, STEEP = 2, 12.0
-# Least share of the bins above the motion, and least number of bins, that must count as noise.
-LEAST_KEPT, FEWEST = 0.25, 8
+# Least number of bins that must count as noise, beside LEAST_KEPT of those above the motion.
+FEWEST = 8
 # A record is divided into PARTS. Those at its end, or beginning, whose rms is at most ALIKE times the least
 # one are quiet if there are at least QUIET_PARTS of them, with at most QUIET_SHARE of the record's rms, and
 # with at least QUIET_SAMPLES samples.

@@ -16,6 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from wedgesweep.diagnose.smoothing import TWO_SIDED
+from wedgesweep.measured import TestRecord
 from wedgesweep.periodogram import power_of, without_trend
 
 # Poles r that are tried, and iterations of a and b for each (multiplicative updates, see Fevotte and others,
@@ -248,3 +249,50 @@ def _fitted(bands: _Bands, member: np.ndarray, level: np.ndarray) -> _Fitted:
     total = levels @ member.T * (red * shape + white) + bands.known
     loss = (bins * (bands.power / total + np.log(total))).sum(axis=-1) / CORRELATED
     return _Fitted(red[:, 0], white[:, 0], levels, loss)
+
+
+# Largest delay between repeats, as a share of their length.
+SHIFT = 0.02
+
+
+def repeat_groups(tests: Sequence[TestRecord]) -> list[list[int]]:
+    """Indices of the tests of each group that repeat one another."""
+    by_file: dict[str, list[int]] = {}
+    for place, test in enumerate(tests):
+        by_file.setdefault(test.repeat_of or test.file, []).append(place)
+    return [rows for rows in by_file.values() if len(rows) > 1]
+
+
+def repeat_differences(records: Sequence[np.ndarray]) -> list[np.ndarray]:
+    """Noise of repeats of a test: what the others do not explain of each record (n,).
+
+    Repeats never start alike. The mean of the others is fitted to each, a little larger, a little later, and
+    with another zero and drift. Residuals are scaled to the variance of the record's own noise. All records
+    are cut to the length of the shortest.
+    """
+    size = min(each.size for each in records)
+    cut = np.array([each[:size] for each in records])
+    # The mean of the others has noise as well.
+    variance = 1.0 + 1.0 / (len(records) - 1)
+    return [_residual(cut[i], np.delete(cut, i, axis=0)) / np.sqrt(variance) for i in range(len(records))]
+
+
+def _residual(record: np.ndarray, others: np.ndarray) -> np.ndarray:
+    """Residual (n,) of a record after a fit of the mean of others (m, n), each delayed to where it fits."""
+    mean = np.mean([_delayed(each, _delay(record, each)) for each in others], axis=0)
+    place = np.linspace(-1.0, 1.0, record.size)
+    columns = np.column_stack([mean, np.gradient(mean), mean * place, np.ones(record.size), place])
+    columns /= np.maximum(np.abs(columns).max(axis=0), 1e-300)
+    return record - columns @ np.linalg.lstsq(columns, record, rcond=None)[0]
+
+
+def _delay(one: np.ndarray, other: np.ndarray) -> int:
+    """Samples by which one record lags behind another, within SHIFT."""
+    longest = int(SHIFT * one.size)
+    return longest - int(np.correlate(other, one[longest : one.size - longest], "valid").argmax())
+
+
+def _delayed(record: np.ndarray, lag: int) -> np.ndarray:
+    """A record (n,) that begins a number of samples later; its ends are repeated."""
+    places = np.clip(np.arange(record.size) - lag, 0, record.size - 1)
+    return record[places]

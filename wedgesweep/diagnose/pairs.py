@@ -3,18 +3,16 @@
 A weak effect by itself may be one component of the right pair, so no effect is dropped for its own fit:
 every other effect is tried together with each of the best single fits. The second effect starts where it
 would fit best if responses added. The most promising pairs are then followed further, on more tests
-(successive halving). Where no pair is adequate, effects that only show in pairs are tried with every other
-as well.
+(successive halving).
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
 from wedgesweep.diagnose import verdict
-from wedgesweep.diagnose.changes import NO_BEST, Best
 from wedgesweep.diagnose.evaluation import Evaluation
 from wedgesweep.diagnose.explanation import Explanation, best_of_each, penalised
 from wedgesweep.diagnose.least_squares import minimise, subset_fit
@@ -35,9 +33,8 @@ SUBSET = 6
 SEEN = 4.0
 # Range of the factor by which changes of the second effect may be scaled where its best start is looked for.
 SCALES = (0.1, 2.0)
-# Names of the stages, by which a spent budget tells what it left out.
+# Name by which a spent budget tells what it left out.
 PAIRS = "pairs with one of the best single effects"
-FURTHER_PAIRS = "pairs with an effect of the best pairs"
 
 
 class SingleScan(NamedTuple):
@@ -76,61 +73,28 @@ class Combination(NamedTuple):
         return beside or bool(self.second.changes.any())
 
 
-class PairSearch(NamedTuple):
-    """What stages of the search for pairs share: data, base fit, all effects by themselves; pairs so far."""
-
-    search: Search
-    base: Fit
-    singles: Mapping[str, SingleScan]
-    found: list[Explanation]
-
-    @property
-    def best(self) -> Best:
-        """The best pair."""
-        return Best(self.found[0].effects, self.found[0].penalised) if self.found else NO_BEST
-
-    def with_others(self, first: Iterable[str], what: str) -> "PairSearch":
-        """The search after a stage that fits combinations of some effects with every other one."""
-        known = self.singles
-        both = [Combination(known[one], known[other]) for one in first for other in known if one != other]
-        found = _fit_combinations(self, both, what)
-        return self._replace(found=best_of_each([*self.found, *found], penalised))
-
-
 def fit_pairs(search: Search, base: Fit, singles: Sequence[Explanation], scans: Scans) -> list[Explanation]:
     """Fit pairs of effects, and return them best first; ``singles``: best fit of each effect by itself."""
     known = {each.effects[0]: single_scan(base, each.fit, scans[each.effects[0]]) for each in singles}
     leading = sorted(known, key=lambda effect: known[effect].fit.chi2)[:LEADING]
-    job = PairSearch(search, base, known, [])
-    job = search.tried(PAIRS, job, lambda job: job.with_others(leading, PAIRS))
-    if verdict.none_adequate(job.found):
-        # Effects that do not stand out by themselves may do so in a pair.
-        showing = dict.fromkeys(effect for each in job.found[:SEVERAL] for effect in each.effects)
-        more = [effect for effect in showing if effect not in leading]
-        job = search.tried(FURTHER_PAIRS, job, lambda job: job.with_others(more, FURTHER_PAIRS))
-    return job.found
-
-
-def _fit_combinations(job: PairSearch, combinations: Sequence[Combination], what: str) -> list[Explanation]:
-    """Fits of combinations, the best first."""
-    search = job.search
-    useful = [each for each in combinations if each.shows and go_together(each.effects)]
-    begun = search.each_affordable(lambda each: starting_fit(search, each), useful, what)
-    further = f"{what}, followed further"
+    both = [Combination(known[one], known[other]) for one in leading for other in known if one != other]
+    useful = [each for each in both if each.shows and go_together(each.effects)]
+    begun = search.each_affordable(lambda each: starting_fit(search, each), useful, PAIRS)
     fits = [fit for fit in begun if np.isfinite(fit.chi2)]
     for entering, iterations in ROUNDS:
-        fits = _continued(search, promising(fits)[:entering], iterations, further)
+        fits = _continued(search, promising(fits)[:entering], iterations)
     completed = SEVERAL if search.budget.left <= 0.0 else LEADING
-    return search.each(lambda fit: _complete(job, fit), promising(fits)[:completed])
+    found = search.each(lambda fit: _complete(search, base, known, fit), promising(fits)[:completed])
+    return best_of_each(found, penalised)
 
 
-def _continued(search: Search, fits: Sequence[Fit], iterations: int, what: str) -> list[Fit]:
+def _continued(search: Search, fits: Sequence[Fit], iterations: int) -> list[Fit]:
     """Fits, the best first, continued for some iterations; as they are once the budget is spent."""
 
     def followed(fit: Fit) -> Fit:
         return minimise(fit.model, fit.evaluation, iterations)
 
-    found = search.each_affordable(followed, fits, what)
+    found = search.each_affordable(followed, fits, f"{PAIRS}, followed further")
     return [*found, *fits[len(found) :]]
 
 
@@ -192,18 +156,18 @@ def starting_fit(search: Search, combination: Combination) -> Fit:
     return unfitted(model, start)
 
 
-def _complete(job: PairSearch, subset: Fit) -> Explanation:
+def _complete(search: Search, base: Fit, singles: Mapping[str, SingleScan], subset: Fit) -> Explanation:
     """A fit to all tests, from the end of a fit to a subset of them.
 
     Nuisance parameters of each test start as in the base fit or in the fit of one of the effects by itself,
     whichever fits this test best.
     """
-    model = job.search.model(*subset.effects)
-    known = [job.base, *(job.singles[effect].fit for effect in subset.effects)]
+    model = search.model(*subset.effects)
+    known = [base, *(singles[effect].fit for effect in subset.effects)]
     starts = [replace(model.start(fit, subset.x[: model.size]), x=subset.x) for fit in known]
     start = replace(starts[0], nuisance=model.best_nuisances(starts))
     found = Explanation(minimise(model, model.evaluate(start)))
-    job.search.finished.append(found)
+    search.finished.append(found)
     return found
 
 

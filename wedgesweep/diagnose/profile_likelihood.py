@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from wedgesweep.diagnose.least_squares import minimise, tight_refit
+from wedgesweep.diagnose.least_squares import BRIEF, minimise, tight_refit
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.smoothing import TWO_SIDED
 
@@ -22,8 +22,6 @@ RISE = TWO_SIDED**2
 RISE_SHARE, TRIES = 0.8, 5
 # The next try is at most this many times further out.
 FURTHER = 3.0
-# Iterations of a fit with a parameter held.
-ITERATIONS = 10
 # Number of values at which the parameter of a switch is held, from the end by the curvature to the bound.
 VALUES = 6
 # No further value is tried once chi-squared has risen by FAR_BEYOND times RISE. Other minima further away are
@@ -74,15 +72,13 @@ class _Side(NamedTuple):
         model = fit.model.holding(parameter, value)
         slope = fit.covariance[:, parameter] / fit.covariance[parameter, parameter]
         x = np.clip(start.x + slope * (value - start.x[parameter]), model.low, model.high)
-        return minimise(model, model.evaluate(replace(start.point, x=x)), ITERATIONS)
+        return minimise(model, model.evaluate(replace(start.point, x=x)), BRIEF)
 
 
 def profile_likelihood(fit: Fit, each: Callable[[Callable, list], list]) -> Fit:
     """The fit, or a better one found beside it, with a covariance as wide as its profile likelihood.
 
     Intervals never become narrower than by the curvature: a fit with a parameter held may stop short as well.
-    Only where the curvature tells nothing, and a parameter is at a bound or belongs to a switch, does the
-    profile alone count.
 
     Parameters
     ----------
@@ -118,11 +114,7 @@ def _lowest(fit: Fit, others: Sequence[Fit]) -> Fit:
 def _profile_end(side: _Side, nearest: Fit) -> ProfileEnd:
     """Move one parameter out until chi-squared has risen by about RISE, or is lower than at the fit."""
     fit, furthest = side.fit, side.furthest
-    low, high = fit.model.low[side.parameter], fit.model.high[side.parameter]
-    switches = fit.model.hypothesis.parameters[side.parameter].switches
-    if TWO_SIDED * side.std > high - low and (switches or fit.x[side.parameter] in (low, high)):
-        return _end_by_bisection(side, nearest)
-    if switches:
+    if fit.model.hypothesis.parameters[side.parameter].switches:
         return _end_beyond_ridges(side, nearest)
     end, held = TWO_SIDED, nearest
     for tries in range(TRIES):
@@ -136,25 +128,6 @@ def _profile_end(side: _Side, nearest: Fit) -> ProfileEnd:
         if rise > RISE_SHARE * RISE or off == furthest:
             break
     return ProfileEnd(end, fit)
-
-
-def _end_by_bisection(side: _Side, nearest: Fit) -> ProfileEnd:
-    """The end where the curvature tells nothing, by bisection between the fit and the bound on one side.
-
-    ``nearest``: the fit at the bound, which comes before the end by the curvature.
-    """
-    low, high = 0.0, side.furthest
-    middle = high
-    for tries in range(TRIES if high else 0):
-        held = side.held(middle, side.fit) if tries else nearest
-        rise = held.chi2 - side.fit.chi2
-        if rise < -LOWER:
-            return ProfileEnd(middle, held)
-        low, high = (middle, high) if rise < RISE else (low, middle)
-        if low == high:
-            break
-        middle = 0.5 * (low + high)
-    return ProfileEnd(high, side.fit)
 
 
 def _end_beyond_ridges(side: _Side, nearest: Fit) -> ProfileEnd:

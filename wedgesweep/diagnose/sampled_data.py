@@ -1,14 +1,13 @@
 """Tests that are compared in time or along an imposed motion; a long record is cut into several of them."""
 
 from abc import abstractmethod
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 from functools import cached_property
-from typing import Any, Self
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 
-from wedgesweep.diagnose.decorrelation import Decorrelation
 from wedgesweep.diagnose.evaluation import (
     Comparison,
     Evaluation,
@@ -19,6 +18,42 @@ from wedgesweep.diagnose.evaluation import (
 )
 from wedgesweep.diagnose.fit_data import INPUT_GAIN, Arrays, FitData
 from wedgesweep.diagnose.model import Fit
+
+# Largest number of samples that are decorrelated together; samples of different blocks count as independent.
+LARGEST_BLOCK = 400
+
+
+class Decorrelation(NamedTuple):
+    """Orthogonal combinations of samples: ``matrix`` (k, k), and the standard deviation (k,) of each."""
+
+    matrix: np.ndarray
+    std: np.ndarray
+
+
+def decorrelation(
+    known: np.ndarray, covariance: Callable[[np.ndarray], np.ndarray], least: float
+) -> Decorrelation:
+    """Combinations with independent noise of the samples that are ``known`` (k,), in their places.
+
+    Rows of the matrix and standard deviations are zero where a sample is not known.
+
+    Parameters
+    ----------
+    known : ndarray of bool, shape (k,)
+        Which samples are compared.
+    covariance : callable
+        Covariance matrix (r, r) of the samples in some rows (r,).
+    least : float
+        Least variance of a combination.
+    """
+    matrix, std = np.zeros((known.size, known.size)), np.zeros(known.size)
+    rows = np.flatnonzero(known)
+    for part in np.array_split(rows, max(-(-rows.size // LARGEST_BLOCK), 1)):
+        variance, vectors = np.linalg.eigh(covariance(part))
+        std[part] = np.sqrt(np.maximum(variance, least))
+        matrix[np.ix_(part, part)] = vectors.T
+    return Decorrelation(matrix, std)
+
 
 # Blocks of a record that are left out in turn, at most.
 MOST_BLOCKS = 12

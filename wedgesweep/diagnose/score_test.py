@@ -14,7 +14,7 @@ import numpy as np
 from wedgesweep.diagnose.evaluation import Evaluation
 from wedgesweep.diagnose.fit_parameters import Hypothesis
 from wedgesweep.diagnose.model import Fit, Model
-from wedgesweep.diagnose.projector import Projector
+from wedgesweep.diagnose.parameter_constancy import Projector
 from wedgesweep.diagnose.search import Scans, Search
 
 # Share of a change of the response that must survive the projection for an effect to be testable.

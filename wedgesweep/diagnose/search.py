@@ -16,14 +16,13 @@ import numpy as np
 
 from wedgesweep.ablation import left_out
 from wedgesweep.diagnose import work
-from wedgesweep.diagnose.changes import SLIGHT, Best, Change, HasBest
 from wedgesweep.diagnose.evaluation import Evaluation
 from wedgesweep.diagnose.explanation import POSSIBLE, Explanation, best_of_each, penalised
 from wedgesweep.diagnose.fit_data import FitData
 from wedgesweep.diagnose.fit_parameters import Hypothesis
-from wedgesweep.diagnose.least_squares import BRIEF, from_other_nuisances, minimise
+from wedgesweep.diagnose.least_squares import BRIEF, minimise
 from wedgesweep.diagnose.model import ROUGH, TOLERANCE, Fit, Model
-from wedgesweep.diagnose.progress import Step
+from wedgesweep.diagnose.work import SLIGHT, Best, Change, HasBest, Step
 
 
 class Round(NamedTuple):
@@ -47,8 +46,6 @@ LEADING = 8
 # share that pairs get even if unknown amplitudes made single effects expensive.
 WORK_PER_TEST, FEWEST_COUNTED, PAIRS_SHARE = 1e5, 12, 1.0 / 3.0
 
-# Name of what may help a fit.
-OTHER_NUISANCES = "other nuisances"
 # Evaluations of each effect over the range of its parameters, beside the base model.
 Scans = Mapping[str, Sequence[Evaluation]]
 Known = TypeVar("Known", bound=HasBest)
@@ -218,7 +215,7 @@ def base_fit(search: Search) -> Explained:
         fit = search.tried(
             "nuisances held", fit, lambda fit: min(fit, _from_held(search, model, evaluations), key=_chi2)
         )
-    fit = _aligned(search, fit)
+    fit = _aligned(fit)
     return Explained(replace(search, data=fit.model.data), Explanation(fit), [], {})
 
 
@@ -244,17 +241,17 @@ def refit_base(known: Explained) -> Explained:
     fit = minimise(model, model.evaluate(replace(best.point, x=x, warm=at_rest)))
     if fit.chi2 >= base.fit.chi2 - SLIGHT:
         return known
-    fit = _aligned(search, fit)
+    fit = _aligned(fit)
     return known._replace(search=replace(search, data=fit.model.data), base=Explanation(fit))
 
 
-def _aligned(search: Search, fit: Fit) -> Fit:
+def _aligned(fit: Fit) -> Fit:
     """The fit on data aligned to it, continued from there if its responses depend on the alignment."""
     model = fit.model.on(fit.model.data.aligned_to(fit.evaluation))
     fit = replace(fit, model=model)
     if model.data.needs_alignment(fit.effects):
-        fit = minimise(model, model.evaluate(fit.point))
-    return search.tried(OTHER_NUISANCES, fit, from_other_nuisances)
+        return minimise(model, model.evaluate(fit.point))
+    return fit
 
 
 def single_fits(known: Explained) -> Explained:
@@ -296,25 +293,14 @@ def single_fit(search: Search, effect: str, base: Fit) -> SingleFit:
     if implausible or _brings_alignment(data, effect) or model.hypothesis.switches:
         # Fitted without the effect, the base model's own parameters are, or may be, far from the truth.
         fresh = data.search_nuisances(rough, [model.start(None, x) for x in points])
-        if model.hypothesis.switches and data.uncertain:
-            fresh = [_with_own_numbers(rough, each) for each in fresh]
         evaluations = evaluations + fresh
         if implausible:
             evaluations = evaluations + beside_stated(model, fresh)
     schedule = SHORT_SCHEDULE if base.p >= POSSIBLE else SCHEDULE
     fit = best_of(model, evaluations, schedule, CUT_OFF * base.chi2)
     if _brings_alignment(data, effect):
-        fit = _aligned(search, fit)
+        fit = _aligned(fit)
     return SingleFit(Explanation(fit), scan, fit.model.data)
-
-
-def _with_own_numbers(model: Model, start: Evaluation) -> Evaluation:
-    """A start of an effect that switches, after a step of all numbers but its first, which is scanned.
-
-    Such an effect makes another model of the base model, with other uncertain numbers. Where these stay as
-    stated, or as fitted without the effect, the start closest to the truth may look worst.
-    """
-    return minimise(model.holding(0, start.point.x[0]), start, 1).evaluation
 
 
 def best_of(

@@ -17,6 +17,7 @@ from scipy.optimize import brentq
 from scipy.special import ndtri
 
 from wedgesweep.measured.kinds import HIGHEST
+from wedgesweep.periodogram import power_of
 
 ORDER = 4
 # Noise of the displacement makes up at most this share of the force, by inertia, and of the velocity; the
@@ -40,8 +41,8 @@ OUTLIER, CLIPPINGS = 4.0, 4
 LEAST_KEPT = 0.25
 # Ends of a 95 % interval in standard deviations, and the median of the absolute value of a normal variable.
 TWO_SIDED, MEDIAN = float(ndtri(0.975)), float(ndtri(0.75))
-# Number of frequencies at which a filter's gain is evaluated.
-GRID = 4096
+# Samples of the Fourier transform by whose frequencies a filter's gain is averaged.
+GRID = 8192
 
 
 @dataclass(frozen=True)
@@ -74,18 +75,12 @@ class LowPass:
 
         ``std``: of the noise before the filter.
         """
-        frequency, gain = self._response
-        return std * float(np.sqrt(np.mean(((2.0 * pi * frequency) ** order * gain) ** 2)))
+        frequency = self.rate * np.fft.rfftfreq(GRID)
+        return std * float(np.sqrt(np.mean(((2.0 * pi * frequency) ** order * self.gain(GRID)) ** 2)))
 
     def noise_above(self, std: float) -> float:
         """Standard deviation of what the filter removes of white noise with this ``std``."""
-        return std * float(np.sqrt(np.mean((1.0 - self._response[1]) ** 2)))
-
-    @cached_property
-    def _response(self) -> tuple[np.ndarray, np.ndarray]:
-        """Frequencies (Hz) up to half the sampling rate, and the gain there."""
-        frequency, once = signal.sosfreqz(self._sections, GRID, fs=self.rate)
-        return frequency, np.abs(once) ** 2
+        return std * float(np.sqrt(np.mean((1.0 - self.gain(GRID)) ** 2)))
 
     def gain(self, size: int) -> np.ndarray:
         """Gain (size // 2 + 1,) at the frequencies of a real Fourier transform of ``size`` samples."""
@@ -143,13 +138,14 @@ def _spread(displacement: np.ndarray, std: float, rate: float) -> tuple[float, f
     Beyond it are neither lines that stand out of white noise (m) of this ``std`` nor, as noise of another
     colour may do so, less power than at still higher frequencies.
     """
-    window = np.hanning(displacement.size)
-    lines = np.abs(np.fft.rfft((displacement - displacement.mean()) * window)) ** 2
-    frequency = np.fft.rfftfreq(displacement.size, 1.0 / rate)
+    lines, frequency = (
+        power_of(displacement - displacement.mean()),
+        np.fft.rfftfreq(displacement.size, 1.0 / rate),
+    )
     speeds = lines * (2.0 * pi * frequency) ** 2
-    power = np.where(lines > STANDS_OUT * std**2 * (window**2).sum(), speeds, 0.0)
+    power = np.where(lines > STANDS_OUT * std**2, speeds, 0.0)
     above = np.cumsum(power[::-1])[::-1]
-    speed = float(np.sqrt(2.0 * above[0] / (window**2).sum() / displacement.size))
+    speed = float(np.sqrt(2.0 * above[0] / displacement.size))
     passed = int(np.argmax(above <= NOT_PASSED**2 * above[0]))
     return speed, min(float(frequency[passed]), _quietest(speeds, frequency))
 

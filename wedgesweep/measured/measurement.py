@@ -146,6 +146,19 @@ class Measurement:
         """The motion that a channel shows: RELATIVE to the base, or ABSOLUTE."""
         return self.columns[channel].get("of", RELATIVE)
 
+    def factors_of(self, channel: str) -> tuple[float, float]:
+        """Factors of a channel and of the input's displacement in the motion that is simulated.
+
+        Their sum is base less mass for the suspension. For the oscillator it is mass less base, or the mass's
+        own motion where its contact or a force does not move with the base.
+        """
+        of, model = self.motion_of(channel), self.model
+        if model.system == "suspension":
+            return (1.0, 0.0) if of == RELATIVE else (-1.0, 1.0)
+        if of in model.simulated_motion:
+            return 1.0, 0.0
+        return 1.0, 1.0 if of == RELATIVE else -1.0
+
     def model_of(self, test: TestRecord) -> Config:
         """The base model with the numbers of a test."""
         return with_numbers(self.model, test.model) if test.model else self.model

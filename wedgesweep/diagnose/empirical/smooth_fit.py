@@ -174,7 +174,7 @@ def _better(here: SmoothFit) -> Evaluation | None:
     """An evaluation that fits better, by a step or a part of it; None if there is none."""
     model, now = here.model, _objective(here, here.evaluation)
     equations = here.equations
-    limits = [each.max_step for each in model.data.nuisances(model.effects, here.evaluation.point)]
+    limits = [each.max_step for each in model.data.nuisances(model.effects)]
     for share in SHARES:
         step = _stepped(here, np.arange(len(here.gradient)), here.prior, here.pull, share) - here.x
         local = share * equations.local_step(step / share, 0.0)[:, equations.eliminated :]

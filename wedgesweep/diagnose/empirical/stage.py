@@ -15,8 +15,7 @@ from wedgesweep.diagnose.cross_validation import (
     with_own_nuisances,
 )
 from wedgesweep.diagnose.empirical.force_map import ForceMap, force_map
-from wedgesweep.diagnose.empirical.hypothesis import EmpiricalHypothesis, Ranges
-from wedgesweep.diagnose.empirical.named_force import at_nodes, half_step
+from wedgesweep.diagnose.empirical.hypothesis import EmpiricalHypothesis, Ranges, at_nodes, half_step
 from wedgesweep.diagnose.empirical.nearest import Nearest, nearest
 from wedgesweep.diagnose.empirical.smooth_fit import SmoothFit, fit
 from wedgesweep.diagnose.evaluation import Evaluation

@@ -14,14 +14,15 @@ import numpy as np
 
 from wedgesweep.config import Config
 from wedgesweep.diagnose import work
-from wedgesweep.diagnose.decorrelation import Decorrelation
 from wedgesweep.diagnose.evaluation import NoStart, NuisanceParameter, Point, Scenario
 from wedgesweep.diagnose.fit_data import BY_TEST, Arrays, Motion
-from wedgesweep.diagnose.loop.recording import Recording
+from wedgesweep.diagnose.loop.recording import Recording, recording
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.next_test.sensors import Sensors, median_test
-from wedgesweep.diagnose.noise_spectrum import NoiseSpectrum
-from wedgesweep.diagnose.sampled_data import SampledData, padded
+from wedgesweep.diagnose.noise_spectrum import NoiseSpectrum, repeat_differences, repeat_groups
+from wedgesweep.diagnose.sampled_data import Decorrelation, SampledData, padded
+from wedgesweep.errors import InputError
+from wedgesweep.measured import Measurement, TestRecord
 from wedgesweep.measured.declarations import LOOP
 from wedgesweep.natural_units import NaturalUnits
 
@@ -145,7 +146,7 @@ class LoopData(SampledData):
         force = max(float(own.force.std()) for own in self.recordings)
         return NaturalUnits(force * time**2 / travel, travel, time)
 
-    def nuisances(self, effects: Iterable[str], point: Point) -> tuple[NuisanceParameter, ...]:
+    def nuisances(self, effects: Iterable[str]) -> tuple[NuisanceParameter, ...]:
         return (ZERO,) if self._zeros_are_free else ()
 
     def start(self) -> tuple[np.ndarray, NoStart]:
@@ -222,3 +223,23 @@ class LoopData(SampledData):
         travel = max(each.half_range for each in self.recordings)
         noise = NoiseSpectrum(0.0, 0.0, max(own.noise_of_displacement, 1e-9 * travel) ** 2)
         return Sensors(self.model, self.law, own.low_pass.rate, (noise,), rms, travel, (0,))
+
+
+def loop_data(measurement: Measurement) -> LoopData:
+    """Loops of all tests, in blocks."""
+    left: dict[int, list[np.ndarray]] = {}
+    for rows in repeat_groups(measurement.tests):
+        forces = [each for row in rows if (each := measurement.tests[row].force) is not None]
+        left |= dict.fromkeys(rows, repeat_differences(forces))
+    recordings = tuple(
+        _recording(measurement, test, left.get(i, [])) for i, test in enumerate(measurement.tests)
+    )
+    chosen = tuple((i, block) for i, own in enumerate(recordings) for block in range(len(own.blocks)))
+    return LoopData(recordings, chosen, measurement.uncertain_of_records, measurement.model_error)
+
+
+def _recording(measurement: Measurement, test: TestRecord, differences: list[np.ndarray]) -> Recording:
+    try:
+        return recording(test, measurement.model_of(test), measurement.law, differences)
+    except InputError as error:
+        raise InputError([f"{test.file}: {problem}" for problem in error.problems]) from error

@@ -12,13 +12,12 @@ from scipy.ndimage import shift
 
 from wedgesweep import systems
 from wedgesweep.config import Config
-from wedgesweep.diagnose.decorrelation import Decorrelation, decorrelation
 from wedgesweep.diagnose.fit_parameters import Values
 from wedgesweep.diagnose.loop import motion_noise
 from wedgesweep.diagnose.loop.force_noise import of_force
 from wedgesweep.diagnose.loop.motion_noise import Derivatives
 from wedgesweep.diagnose.noise_spectrum import FROM_REPEATS, NoiseSpectrum, of_noise
-from wedgesweep.diagnose.sampled_data import MOST_BLOCKS
+from wedgesweep.diagnose.sampled_data import MOST_BLOCKS, Decorrelation, decorrelation
 from wedgesweep.diagnose.smoothing import LowPass, Motion, chosen_cutoff, motion, white_noise
 from wedgesweep.effects import channel_delay, force_gain, merge
 from wedgesweep.errors import InputError

@@ -130,7 +130,7 @@ def _adapted(data: FitData, one: Fit, other: Fit) -> float:
 
 def _unmoved(data: FitData, fit: Fit) -> np.ndarray:
     """No step of the nuisance parameters that are fitted beside an explanation, shape (L,)."""
-    return np.zeros(len(data.nuisances(fit.effects, Point(fit.x, *data.start()))))
+    return np.zeros(len(data.nuisances(fit.effects)))
 
 
 def _distances(one: _Prediction, other: _Prediction) -> np.ndarray:

@@ -11,7 +11,6 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.ndimage import minimum_filter1d
 
-from wedgesweep.diagnose.changes import SLIGHT
 from wedgesweep.diagnose.fit_data import FitData
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.next_test.designs import Design, Offer, offered
@@ -20,6 +19,7 @@ from wedgesweep.diagnose.next_test.sensors import Sensors
 from wedgesweep.diagnose.next_test.steady import sines
 from wedgesweep.diagnose.next_test.transients import releases, sweeps
 from wedgesweep.diagnose.transient.transient_data import RELEASE, SWEEP
+from wedgesweep.diagnose.work import SLIGHT
 from wedgesweep.measured.declarations import LOOP, STEADY, TRANSIENT
 
 # Squared distance at which two explanations are separated; up to SLIGHT they do not differ visibly.

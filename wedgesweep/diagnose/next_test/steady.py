@@ -45,15 +45,11 @@ class SineTests(HarmonicData):
         values = {name: each for name, each in scenario.values.items() if name != INPUT_GAIN}
         return super().records(scenario._replace(values=values))
 
-    def _respond(
-        self, rows: np.ndarray, phase: np.ndarray | None, warm: Warm, tolerance: float
-    ) -> simulation.Responses:
-        if phase is None or self.foreign_tone is None:
+    def _respond(self, rows: np.ndarray, toned: bool, warm: Warm, tolerance: float) -> simulation.Responses:
+        if not toned or self.foreign_tone is None:
             return simulation.respond(rows, warm, self.shape[1], tolerance)
         untimed = (simulation.ToneTiming(simulation.UNTIMED, 0.0, nan),) * len(rows)
-        return simulation.respond_with_tone(
-            rows, warm, self.shape[1], self.foreign_tone, untimed, phase, tolerance
-        )
+        return simulation.respond_with_tone(rows, warm, self.shape[1], self.foreign_tone, untimed, tolerance)
 
 
 def sines(best: Fit, known: Sensors, measured: HarmonicData | None) -> Design:

@@ -10,18 +10,16 @@ import numpy as np
 
 from wedgesweep import __version__, rotation
 from wedgesweep.config import Config
-from wedgesweep.diagnose.changes import SLIGHT, summary
 from wedgesweep.diagnose.cross_validation import Gain
 from wedgesweep.diagnose.diagnosis import Diagnosis, excluded_effects
 from wedgesweep.diagnose.explanation import ADEQUATE, POSSIBLE, Explanation, parameter_penalty
-from wedgesweep.diagnose.ladder import Level, Rated
+from wedgesweep.diagnose.ladder import ByRecord, Level, Rated
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.next_test.recommend import SEPARATED, NextTest
-from wedgesweep.diagnose.record_by_record import ByRecord
 from wedgesweep.diagnose.result import missing_force
 from wedgesweep.diagnose.result.estimates import finite, parameters, uncertain, widen
 from wedgesweep.diagnose.verdict import LARGER, Finding, p_where_it_shows
-from wedgesweep.diagnose.work import OutOfTime
+from wedgesweep.diagnose.work import SLIGHT, OutOfTime, summary
 from wedgesweep.diagnosis_result import FAILED, NO_BETTER
 from wedgesweep.effects import EFFECTS
 

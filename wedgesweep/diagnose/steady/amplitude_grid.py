@@ -52,7 +52,7 @@ class _GridSearch:
     def evaluate(self, levels: np.ndarray) -> None:
         """Evaluate the levels (n, T), starting from the responses at those before."""
         points = [
-            _with_amplitude(each, np.where(self.unknown, level, each.nuisance[:, 0]))
+            replace(each, nuisance=np.where(self.unknown, level, each.nuisance[:, 0])[:, None])
             for each, level in zip(self.current, levels, strict=True)
         ]
         evaluations = self.model.evaluate_all(points)
@@ -75,14 +75,10 @@ class _GridSearch:
             self.evaluate(np.where(sticks, stuck + step / FINE * log(FACTOR), amplitudes))
 
 
-def _with_amplitude(point: Point, amplitude: np.ndarray) -> Point:
-    return replace(point, nuisance=np.column_stack([amplitude, point.nuisance[:, 1:]]))
-
-
 def _tests_of(one: Point, other: Point, chosen: np.ndarray) -> Point:
     """A point with the amplitudes and states of some tests (T,) from another."""
-    amplitude = np.where(chosen, other.nuisance[:, 0], one.nuisance[:, 0])
-    return replace(_with_amplitude(one, amplitude), warm=one.warm.where(chosen, other.warm))
+    amplitude = np.where(chosen[:, None], other.nuisance, one.nuisance)
+    return replace(one, nuisance=amplitude, warm=one.warm.where(chosen, other.warm))
 
 
 def _sticks(data: FitData, evaluation: Evaluation) -> np.ndarray:

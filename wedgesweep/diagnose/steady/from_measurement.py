@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from wedgesweep.diagnose.channel_factors import channel_factors
 from wedgesweep.diagnose.fit_data import INPUT_GAIN
 from wedgesweep.diagnose.steady import column_load, simulation, tone
 from wedgesweep.diagnose.steady.column_load import ColumnLoad
@@ -109,7 +108,7 @@ def _under_recorded_input(measurement: Measurement) -> RecordedInputData:
     quantity = measurement.recorded_input
     assert quantity is not None
     named = _converted(measurement)
-    motions = [channel_factors(measurement.model, of) for *_, of in named]
+    motions = [measurement.factors_of(name) for name, _ in named]
     read = [_read_test(test, named, motions, quantity) for test in measurement.tests]
     spectra = tuple(each[0] for each in read)
     orders = max(each[1].displacement.shape[1] for each in read)
@@ -120,7 +119,7 @@ def _under_recorded_input(measurement: Measurement) -> RecordedInputData:
         )
     )
     as_measured = {
-        name for (name, slot, _), (_, share) in zip(named, motions, strict=True) if name == slot and not share
+        name for (name, slot), (_, share) in zip(named, motions, strict=True) if name == slot and not share
     }
     gain = {INPUT_GAIN: measurement.input_gain_std} if measurement.input_gain_std else {}
     data = RecordedInputData(
@@ -150,25 +149,27 @@ def _hidden_effects(as_measured: set[str], converted: bool) -> tuple[str, ...]:
     return (*found, "fixture_resonance", DELAY) if converted else tuple(found)
 
 
-# Quantity that a channel measures, the one that it is compared as, and of which motion: "relative" or
-# "absolute".
-Channel = tuple[str, str, str]
+# Quantity that a channel measures, and the one that it is compared as.
+Channel = tuple[str, str]
 
 
 def _converted(measurement: Measurement) -> list[Channel]:
     """The compared channels: the first one is compared as a displacement, a second one as a velocity."""
     slots = ("displacement", "velocity")
     names = measurement.compared(measurement.tests[0])
-    return [(name, slots[i], measurement.motion_of(name)) for i, name in enumerate(names)]
+    return list(zip(names, slots, strict=False))
 
 
 def _read_test(
     test: TestRecord, named: list[Channel], motions: list[tuple[float, float]], quantity: str
 ) -> tuple[Spectrum, InputHarmonics]:
-    """Spectrum of the responses of a test and harmonics of its input; ``motions``: see channel_factors."""
+    """Spectrum of the responses of a test, and harmonics of its input.
+
+    ``motions``: see ``Measurement.factors_of``.
+    """
     frequency = test.refined_frequency
     signals = np.array(
-        [sign * getattr(test, name) for (name, *_), (sign, _) in zip(named, motions, strict=True)]
+        [sign * getattr(test, name) for (name, _), (sign, _) in zip(named, motions, strict=True)]
     )
     assert test.input is not None
     found = fitted(test.time, signals, frequency)
@@ -195,7 +196,7 @@ def _as_motion(
     mean, variance = found.mean.copy(), found.variance.copy()
     conversion = np.zeros(mean.shape, complex)
     scaled = False
-    for i, (name, slot, _) in enumerate(named[: len(mean)]):
+    for i, (name, slot) in enumerate(named[: len(mean)]):
         factor = _slot_factor(found, named[i])
         scaled = scaled or name != slot
         mean[i] *= factor
@@ -208,7 +209,7 @@ def _as_motion(
 
 def _slot_factor(found: Spectrum, channel: Channel) -> np.ndarray:
     """Factor (N,) that turns a channel's harmonics into those of the quantity that it is compared as."""
-    name, slot, _ = channel
+    name, slot = channel
     return motion_factor(found, name) / motion_factor(found, slot)
 
 

@@ -1,7 +1,7 @@
 """Steady harmonics as data of a fit.
 
 Each test has a start phase, eliminated in closed form, and an input amplitude, fitted as its logarithm over
-the stated one. Under a spurious tone the phase of the tone is a third nuisance parameter.
+the stated one.
 """
 
 from collections.abc import Iterable, Sequence
@@ -11,7 +11,6 @@ from typing import Any, NamedTuple, Self
 
 import numpy as np
 
-from wedgesweep.diagnose.changes import SLIGHT
 from wedgesweep.diagnose.evaluation import Comparison, Evaluation, NuisanceParameter, Point, Scenario
 from wedgesweep.diagnose.fit_data import Arrays, FitData, Motion
 from wedgesweep.diagnose.model import Fit, Model
@@ -22,6 +21,7 @@ from wedgesweep.diagnose.steady.column_load import CHANNEL
 from wedgesweep.diagnose.steady.spectra import SIMULATED, Spectrum
 from wedgesweep.diagnose.steady.tone import SAME, TONE, TONE_FREQUENCY
 from wedgesweep.diagnose.steady.whitened import WhitenedHarmonics, real
+from wedgesweep.diagnose.work import SLIGHT
 from wedgesweep.effects import acting
 from wedgesweep.effects.states import TIME, kinds
 from wedgesweep.measured.declarations import STEADY
@@ -31,11 +31,10 @@ from wedgesweep.solvers.periodic import Warm, at_rest, joined
 from wedgesweep.systems import compact
 from wedgesweep.systems.records import stacked
 
-# Columns of the nuisance parameters: logarithm of the amplitude over its reference, phase of the tone (rad).
+# The nuisance parameter: logarithm of the amplitude over its reference.
 AMPLITUDE = NuisanceParameter(step=2e-3, max_step=0.1)
 # Effects that only a recorded input, or a recorded force, shows.
 OF_RECORDED = ("input_gain", "force_gain", "channel_delay")
-TONE_PHASE = NuisanceParameter(step=1e-2, max_step=0.3)
 # A stated amplitude that a fit changes by more than this (relative) makes up for a wrong model.
 IMPLAUSIBLE = 0.3
 # Relative standard deviation of an amplitude that is held as stated.
@@ -116,13 +115,11 @@ class HarmonicData(WhitenedHarmonics, FitData):
         """Whether responses under these effects contain the tone."""
         return self.tone is not None and TONE in {*acting(self.model.effects), *effects}
 
-    def nuisances(self, effects: Iterable[str], point: Point) -> tuple[NuisanceParameter, ...]:
-        both = self.has_tone(effects) and bool(np.isfinite(point.nuisance[:, 1]).any())
-        return (AMPLITUDE, TONE_PHASE) if both else (AMPLITUDE,)
+    def nuisances(self, effects: Iterable[str]) -> tuple[NuisanceParameter, ...]:
+        return (AMPLITUDE,)
 
     def start(self) -> tuple[np.ndarray, Warm]:
-        stated = np.column_stack([np.zeros(self.tests), np.full(self.tests, np.nan)])
-        return stated, at_rest(self.tests)
+        return np.zeros((self.tests, 1)), at_rest(self.tests)
 
     def records(self, scenario: Scenario) -> np.ndarray:
         """Parameter records (T,) of the tests in a scenario."""
@@ -140,23 +137,17 @@ class HarmonicData(WhitenedHarmonics, FitData):
 
     def _simulate(self, scenarios: Sequence[Scenario], tolerance: float) -> Simulated:
         rows = [self.records(each) for each in scenarios]
-        phase = np.concatenate([each.point.nuisance[:, 1] for each in scenarios])
         warm = joined([each.point.warm for each in scenarios])
-        toned = self.has_tone(scenarios[0].values)
-        done = self._respond(stacked(rows), phase if toned else None, warm, tolerance)
+        done = self._respond(stacked(rows), self.has_tone(scenarios[0].values), warm, tolerance)
         shape = (len(scenarios), self.tests)
         harmonics = done.harmonics.reshape(*shape, *done.harmonics.shape[1:])[:, :, : self.shape[0]]
         return Simulated(harmonics, done.found.reshape(shape), done.warm)
 
-    def _respond(
-        self, rows: np.ndarray, phase: np.ndarray | None, warm: Warm, tolerance: float
-    ) -> simulation.Responses:
-        """Responses to parameter records, under the tone at some phase, or without a tone."""
-        if phase is not None and self.tone is not None:
+    def _respond(self, rows: np.ndarray, toned: bool, warm: Warm, tolerance: float) -> simulation.Responses:
+        """Responses to parameter records, with the tone or without it."""
+        if toned and self.tone is not None:
             timings = self.tone_timings * (len(rows) // self.tests)
-            return simulation.respond_with_tone(
-                rows, warm, self.shape[1], self.tone, timings, phase, tolerance
-            )
+            return simulation.respond_with_tone(rows, warm, self.shape[1], self.tone, timings, tolerance)
         done = simulation.respond(rows, warm, SIMULATED, tolerance, load=bool(self.loads))
         if self.tone is None:
             return done
@@ -275,12 +266,6 @@ class HarmonicData(WhitenedHarmonics, FitData):
         """One in each test with a tone that these effects explain: its phase."""
         return np.array([self.has_tone(effects) and s.has_tone for s in self.spectra])
 
-    def other_nuisances(self, model: Model, evaluation: Evaluation) -> np.ndarray | None:
-        effects, point = model.effects, evaluation.point
-        if not self.has_tone(effects) or len(self.nuisances(effects, point)) > 1:
-            return None
-        return model.best_nuisances(tone.phases(point, self.extra_nuisances(effects)))
-
     def aligned_to(self, evaluation: Evaluation) -> Self:
         return replace(self, input_phase=evaluation.response.phase)
 
@@ -311,7 +296,7 @@ class HarmonicData(WhitenedHarmonics, FitData):
         simulated = np.abs(evaluation.response.harmonics[:, 0, 0])
         match = np.log(measured / np.where(simulated > 0.0, simulated, measured))
         unknown = np.isinf(self.amplitude_std)
-        return np.column_stack([np.where(unknown, match, step[:, 0]), step[:, 1:]])
+        return np.where(unknown, match, step[:, 0])[:, None]
 
     def held_out_groups(self) -> list[tuple[str, np.ndarray]]:
         """All tests of one frequency, and of one amplitude if all amplitudes are known."""

@@ -9,17 +9,17 @@ covariance, the residual has the covariance
 in units of the responses' own noise, C being the covariance of the latter with that of the input.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple, Self
 
 import numpy as np
 
 from wedgesweep import excitation
-from wedgesweep.diagnose.evaluation import Evaluation, NuisanceParameter, Point, Scenario
+from wedgesweep.diagnose.evaluation import Evaluation, Scenario
 from wedgesweep.diagnose.fit_data import INPUT_GAIN
 from wedgesweep.diagnose.model import TIGHT
-from wedgesweep.diagnose.steady.harmonic_data import AMPLITUDE, HarmonicData, Simulated
+from wedgesweep.diagnose.steady.harmonic_data import HarmonicData, Simulated
 from wedgesweep.diagnose.steady.spectra import Spectrum
 from wedgesweep.diagnose.steady.stated_input import LEAST_STEP
 from wedgesweep.effects.channel_delay import NAME as DELAY
@@ -110,9 +110,6 @@ class RecordedInputData(HarmonicData):
 
     def with_undetected(self, effect: str) -> Self:
         return self if effect in self.hidden else super().with_undetected(effect)
-
-    def nuisances(self, effects: Iterable[str], point: Point) -> tuple[NuisanceParameter, ...]:
-        return (AMPLITUDE,)
 
     def candidates(self, effects: Sequence[str]) -> tuple[str, ...]:
         shown = {*super().candidates(effects), DELAY, *(() if self.input_gain_std else (INPUT_GAIN,))}

@@ -98,14 +98,13 @@ def respond_with_tone(
     harmonics: int,
     tone: float,
     timings: Sequence[ToneTiming],
-    source_phase: np.ndarray,
     tolerance: float = TOLERANCE,
 ) -> Responses:
     """Responses under a spurious tone, which do not repeat; the tone is the last column of the harmonics.
 
-    If the phase of the vibration is unknown, a response is simulated twice: with any phase, which shows its
-    lag, and then with the phase that gives the measured one. If the record does not show the tone either, the
-    response is averaged over UNTIMED periods.
+    A response is simulated twice: with any phase of the vibration, which shows its lag, and then with the
+    phase that gives the measured one. If the record does not show the tone, the response is averaged over
+    UNTIMED periods.
 
     Parameters
     ----------
@@ -119,15 +118,12 @@ def respond_with_tone(
         Frequency of the tone in Hz.
     timings : sequence of ToneTiming, n of them
         Timing of each record.
-    source_phase : ndarray, shape (n,)
-        Phase (rad) of the vibration that causes the tone, beside that of the parameters; NaN where unknown.
     tolerance : float
         Relative tolerance.
     """
     rows = rows.copy()
-    rows["stray_vibration"]["phase"] += np.nan_to_num(source_phase)
     measured = np.array([timing.tone_phase for timing in timings])
-    untimed = np.isnan(source_phase) & np.isnan(measured)
+    untimed = np.isnan(measured)
     timings = tuple(
         each._replace(periods=UNTIMED) if one else each for each, one in zip(timings, untimed, strict=True)
     )
@@ -136,7 +132,7 @@ def respond_with_tone(
         state = periodic.sampled(rows, state, FROM_REST, 1, SAMPLES_PER_PERIOD, tolerance).state
         _count(rows, FROM_REST + 1)
     spectra, state = _recorded(rows, state, harmonics, tone, timings, tolerance)
-    lag = np.where(np.isnan(source_phase), measured, np.nan) - np.angle(spectra[:, 0, -1])
+    lag = measured - np.angle(spectra[:, 0, -1])
     again = np.flatnonzero(np.isfinite(lag))
     if again.size:
         rows["stray_vibration"]["phase"][again] += lag[again]

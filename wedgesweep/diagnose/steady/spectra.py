@@ -34,9 +34,6 @@ LEAST_REMAINING = 0.2
 SAME_SIGNAL = 0.98
 # Probability of a false alarm in noise: of a tone, or of a response that repeats only every other period.
 FALSE_ALARM = 1e-4
-# Intermodulation lines of a tone and the harmonics hide the noise as close as this (resolutions); they are
-# left out if this share of the lines remains.
-TONE_LINE_WIDTH, LEAST_CLEAR_SHARE = 0.8, 0.3
 
 
 class AliasMap(NamedTuple):
@@ -211,7 +208,7 @@ def fitted(
     solution = inverse @ (matrix.T @ channels.T)
     mean = design.read(solution).T
     residual = channels - (matrix @ solution).T
-    lines = _noise_lines(time, frequency, design, inverse, tone, doubled)
+    lines = _noise_lines(time, frequency, design, inverse, doubled)
     level, coherence = noise_psd.levels(residual, lines)
     if abs(coherence) > SAME_SIGNAL:
         mean, residual, level, coherence = mean[:1], residual[:1], level[:1], 0.0j
@@ -239,7 +236,7 @@ def noise_coherence(time: np.ndarray, channels: np.ndarray, frequency: float) ->
     design = design_matrix(time, time[-1] / (time.size - 1), frequency, None, False)
     inverse = np.linalg.inv(design.matrix.T @ design.matrix)
     residual = channels - (design.matrix @ (inverse @ (design.matrix.T @ channels.T))).T
-    return noise_psd.levels(residual, _noise_lines(time, frequency, design, inverse, None, False))[1]
+    return noise_psd.levels(residual, _noise_lines(time, frequency, design, inverse, False))[1]
 
 
 def _noise_lines(
@@ -247,7 +244,6 @@ def _noise_lines(
     frequency: float,
     design: DesignMatrix,
     inverse: np.ndarray,
-    tone: float | None,
     doubled: bool,
 ) -> noise_psd.SpectralLines:
     """Lines between the harmonics at which the residual of a fit is noise."""
@@ -258,24 +254,9 @@ def _noise_lines(
     redundancy = max(1.0, PARTS / (frequency * time[-1]))
     remaining = 1.0 - _absorbed(phasors @ design.matrix, inverse) / time.size
     seen = remaining > LEAST_REMAINING
-    if tone is not None:
-        seen = _without_intermodulation(seen, frequency / PARTS * parts, frequency, tone, time[-1])
     return noise_psd.SpectralLines(
         frequency / PARTS * parts[seen], phasors[seen], remaining[seen], redundancy
     )
-
-
-def _without_intermodulation(
-    seen: np.ndarray, lines: np.ndarray, frequency: float, tone: float, duration: float
-) -> np.ndarray:
-    """Mask of the lines (Hz) without intermodulation lines of a tone with the harmonics.
-
-    Those of a weak tone do not stand out of the noise, but add to it. If too few lines would be left, the
-    mask ``seen`` stays as it is.
-    """
-    away = np.minimum(distance(lines - tone, frequency), distance(lines + tone, frequency))
-    clear = seen & (away * duration > TONE_LINE_WIDTH)
-    return clear if clear.sum() > LEAST_CLEAR_SHARE * seen.sum() else seen
 
 
 def _absorbed(products: np.ndarray, inverse: np.ndarray) -> np.ndarray:

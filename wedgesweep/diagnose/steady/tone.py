@@ -1,7 +1,6 @@
 """A spurious (interharmonic) tone: one frequency that stands out between the harmonics of several tests."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from math import ceil, pi
 from typing import NamedTuple
 
@@ -9,7 +8,6 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 from scipy.special import gammaln, logsumexp, xlogy
 
-from wedgesweep.diagnose.evaluation import Point
 from wedgesweep.diagnose.steady.harmonic_fit import BAND, REMOVED, regressors, resolvable, within_band
 from wedgesweep.diagnose.steady.spectra import FALSE_ALARM, Spectrum
 
@@ -26,8 +24,6 @@ NOT_HARMONIC = 0.05
 SAME = 0.02
 # Least curvature of the power over a step of the grid: below it the frequency is undetermined.
 LEAST_CURVATURE = 1e-3
-# Phases at which a fit of the phase begins.
-PHASES = 12
 
 
 class Tone(NamedTuple):
@@ -149,15 +145,3 @@ def log_p_value(power: np.ndarray, count: np.ndarray) -> np.ndarray:
     terms = xlogy(orders, power[:, None]) - gammaln(orders + 1.0)
     terms[orders >= np.maximum(count, 1)[:, None]] = -np.inf
     return logsumexp(terms, axis=1) - power
-
-
-def phases(point: Point, tone_tests: np.ndarray) -> list[Point]:
-    """The point with every phase tried in all tests (T,) that have a tone; NaN in the others.
-
-    A tone runs through all phases of the input, but in a record of few periods only through some of them, and
-    friction responds to both at once. Where the tone shows in the record, so does its phase. But near half
-    the input's frequency the lag of the response depends on that phase, and a tone that the record cannot
-    resolve from a harmonic shows in the other harmonics only. So the phase is fitted.
-    """
-    tried = np.where(tone_tests, 2.0 * pi / PHASES * np.arange(PHASES)[:, None], np.nan)
-    return [replace(point, nuisance=np.column_stack([point.nuisance[:, 0], phase])) for phase in tried]

@@ -18,9 +18,6 @@ WINDOW, LEAD = 10.0, 1.0
 # The lead under an input, which keeps lifting wedges off: they forget their start later. Of its periods the
 # last LEAD ones count for the noise of the input.
 DRIVEN_LEAD = 1.5
-# A motion whose peak-to-peak over a natural period is below this share of that of its record may stick: when
-# friction lets go depends on how long it has stuck.
-STUCK = 0.05
 # Share of a record under an input that is simulated before its first window, at most.
 LEAD_SHARE = 0.125
 # A single record is cut into at least FEWEST windows, if each has SHORTEST natural periods. Friction ends
@@ -97,20 +94,6 @@ def cuts(samples: int, period: float, skipped: int, fewest: int) -> list[Cut]:
     return [Cut(first, inside, min(lead, first - skipped)) for first in firsts]
 
 
-def _from_last_slip(cut: Cut, motion: np.ndarray, period: float, skipped: int) -> Cut:
-    """The window with a lead that goes back to where the motion (n,) last slipped, if it may stick.
-
-    A window in which the mass rests all the time stays as it is: there friction does not let go.
-    """
-    size, allowed = ceil(period), STUCK * float(np.ptp(motion))
-    start = cut.first - cut.lead
-    if np.ptp(motion[start : cut.first + cut.inside]) < allowed:
-        return cut
-    while start > skipped and np.ptp(motion[max(start - size, skipped) : start + size]) < allowed:
-        start = max(start - size, skipped)
-    return cut._replace(lead=cut.first - start)
-
-
 def windows(record: Recorded, model: Config, law: str, fewest: int = 1) -> list[RecordWindow]:
     """Windows of a record; ``fewest``: see ``cuts``."""
     rate, given = record.rate, record.input
@@ -122,7 +105,7 @@ def windows(record: Recorded, model: Config, law: str, fewest: int = 1) -> list[
     rest, length = _extent(displacement)
     smooth = LowPass(min(top / (2.0 * pi), HIGHEST), 1.0)(displacement) - rest
     slope = np.gradient(smooth) * rate
-    parts = _cuts(record, smooth, period, fewest)
+    parts = cuts(record.channels.shape[1], period, given.settling if given else 0, fewest)
     passed_on, input_noise = _passed_on(record), given.input_noise(record.shares) if given else None
     found = []
     for place, (first, inside, lead) in enumerate(parts, 1):
@@ -149,15 +132,6 @@ def windows(record: Recorded, model: Config, law: str, fewest: int = 1) -> list[
             )
         )
     return found
-
-
-def _cuts(record: Recorded, motion: np.ndarray, period: float, fewest: int) -> list[Cut]:
-    """Windows of a record; under an input they are simulated from where the motion (n,) last slipped."""
-    samples = record.channels.shape[1]
-    if record.input is None:
-        return cuts(samples, period, 0, fewest)
-    skipped = record.input.settling
-    return [_from_last_slip(each, motion, period, skipped) for each in cuts(samples, period, skipped, fewest)]
 
 
 def _displacement(record: Recorded, omega: float) -> np.ndarray:

@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from wedgesweep.diagnose.channel_factors import channel_factors
 from wedgesweep.diagnose.noise_bins import PARTS
 from wedgesweep.diagnose.noise_spectrum import NoiseSpectrum
 from wedgesweep.diagnose.transient.cutting import FEWEST, Recorded, windows
@@ -85,8 +84,7 @@ def _record(
     test, given = measurement.tests[number], None
     if test.input is not None and measurement.recorded_input is not None:
         given = RecordedInput(test.input, measurement.recorded_input, test.sampling_rate)
-    model = measurement.model_of(test)
-    factors = [channel_factors(model, measurement.motion_of(MOTIONS[order])) for order in channels]
+    factors = [measurement.factors_of(MOTIONS[order]) for order in channels]
     converted = [
         factor * samples + (share * given.derivative(order) if given and share else 0.0)
         for (order, samples), (factor, share) in zip(channels.items(), factors, strict=True)

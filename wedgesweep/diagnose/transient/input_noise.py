@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.fft import dct
 
-from wedgesweep.diagnose.decorrelation import LARGEST_BLOCK, Decorrelation, decorrelation
+from wedgesweep.diagnose.sampled_data import LARGEST_BLOCK, Decorrelation, decorrelation
 from wedgesweep.diagnose.smoothing import derivative
 from wedgesweep.sampled_input import SampledInput, polynomials
 

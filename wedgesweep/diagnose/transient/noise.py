@@ -13,7 +13,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from wedgesweep.diagnose import repeats
 from wedgesweep.diagnose.noise_bins import FEWEST, ROUNDS, OwnNoise, noise_bins, quiet_bins
 from wedgesweep.diagnose.noise_spectrum import (
     BEST_FIT,
@@ -24,6 +23,8 @@ from wedgesweep.diagnose.noise_spectrum import (
     NoiseSpectrum,
     fit_spectra,
     of_noise,
+    repeat_differences,
+    repeat_groups,
 )
 from wedgesweep.diagnose.smoothing import unlike_steps
 from wedgesweep.diagnose.transient.channel_differences import Difference, differences
@@ -175,9 +176,9 @@ def _smooth(channels: Channels) -> Channels:
 def from_repeats(tests: Sequence[TestRecord], channels: Sequence[Channels]) -> Spectra:
     """Noise of tests that were run more than once, by what does not repeat."""
     found: Spectra = {}
-    for rows in repeats.groups(tests):
+    for rows in repeat_groups(tests):
         for order in channels[rows[0]]:
-            left = repeats.differences([channels[row][order] for row in rows])
+            left = repeat_differences([channels[row][order] for row in rows])
             noise = of_noise(left, FROM_REPEATS)
             found |= {(row, order): noise for row in rows}
     return found

@@ -6,7 +6,7 @@ zero of the displacement is unknown in each.
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property, partial
+from functools import cached_property
 from math import ceil
 from typing import Any, Self
 
@@ -14,7 +14,6 @@ import numpy as np
 
 from wedgesweep.config import Config
 from wedgesweep.diagnose import work
-from wedgesweep.diagnose.decorrelation import Decorrelation
 from wedgesweep.diagnose.evaluation import (
     UNUSED,
     Evaluation,
@@ -26,12 +25,11 @@ from wedgesweep.diagnose.evaluation import (
 from wedgesweep.diagnose.fit_data import INPUT_GAIN, Arrays, Motion
 from wedgesweep.diagnose.model import TOLERANCE, Fit, Model
 from wedgesweep.diagnose.next_test.sensors import Sensors, median_test
-from wedgesweep.diagnose.sampled_data import SampledData, best_of_each_test, padded
-from wedgesweep.diagnose.transient import arrays
-from wedgesweep.diagnose.transient.beyond_jumps import best_start, places, standing_out
+from wedgesweep.diagnose.sampled_data import Decorrelation, SampledData, best_of_each_test, padded
 from wedgesweep.diagnose.transient.window import BODIES, RecordWindow, simulated_together
 from wedgesweep.effects import acting
 from wedgesweep.effects.channel_delay import NAME as DELAY
+from wedgesweep.measured.declarations import MOTIONS
 from wedgesweep.natural_units import NaturalUnits
 
 # Next tests like these: free motions, and motions under an input.
@@ -44,10 +42,13 @@ OF_SENSORS = {"displacement_gain": 0, "velocity_lag": 1}
 START = (NuisanceParameter(step=1e-4, max_step=0.1), NuisanceParameter(step=1e-4, max_step=0.1))
 # The same of each of BODIES, in their order.
 BODY_STARTS = START * len(BODIES)
-# All ``places`` are tried as starts if there are at most FEW points.
-FEW = 3
+# Places that are tried as starts, as shares of their range, if there are at most FEW points.
+SHARES, FEW = np.linspace(-1.0, 1.0, 101), 3
 # Samples that are simulated at a time, at most: they take some hundred megabytes.
 MOST_TOGETHER = 4_000_000
+# Dimensions and unit of stored motions.
+BY_SAMPLE, BY_CHANNEL = ("test", "sample"), ("test", "channel", "sample")
+CHANNEL_UNIT = "m, m/s or m/s^2"
 # Gain of a recorded input, as its logarithm.
 GAIN = NuisanceParameter(step=1e-3, max_step=0.1)
 
@@ -155,21 +156,19 @@ class TransientData(SampledData):
         length = np.array([own.length for own in self.windows])
         return np.column_stack([length, length * np.array([own.grid.omega for own in self.windows])])
 
-    @cached_property
+    @property
     def _anywhere(self) -> np.ndarray:
-        """Starts (T, n, 2) at which a test might begin, as its record does not show its zero.
+        """Starts (n, T, N) at which a test might begin, as its record does not show its zero.
 
         A mass may rest anywhere before the input moves it. A free motion begins with the recorded velocity,
         and may end far from where the spring alone would end it.
         """
-        longest = max(self.units.length, *(own.length for own in self.windows))
-        velocities = self.start()[0][:, 1]
-        return np.array(
-            [
-                places(1.0, 0.0) if own.driven else places(longest / own.length, velocity)
-                for own, velocity in zip(self.windows, velocities, strict=True)
-            ]
-        )
+        stated, _ = self.start()
+        driven, length = (np.array([getattr(own, n) for own in self.windows]) for n in ("driven", "length"))
+        reach = np.where(driven, 1.0, max(self.units.length, length.max()) / length)
+        found = np.zeros((SHARES.size, *stated.shape))
+        found[..., 0], found[..., 1] = np.multiply.outer(SHARES, reach), np.where(driven, 0.0, stated[:, 1])
+        return found
 
     def starts(self, point: Point) -> np.ndarray:
         """Displacement (m) and velocity (m/s) at the first sample of each test, (T, 2)."""
@@ -186,7 +185,7 @@ class TransientData(SampledData):
         common = np.full(self.tests, scenario.values.get(INPUT_GAIN, {"scale": 1.0})["scale"])
         return common * np.exp(scenario.point.nuisance[:, len(START)]) if self.gain_std else common
 
-    def nuisances(self, effects: Iterable[str], point: Point) -> tuple[NuisanceParameter, ...]:
+    def nuisances(self, effects: Iterable[str]) -> tuple[NuisanceParameter, ...]:
         known = (*START, GAIN) if self.gain_std else START
         moving = self._moving(effects)
         if not any(moving):
@@ -246,29 +245,52 @@ class TransientData(SampledData):
     def search_nuisances(self, model: Model, points: Sequence[Point]) -> list[Evaluation]:
         """Evaluations of points, each test from the best of several starts."""
         stated, at_rest = self.start()
-        starts = [stated]
-        if len(points) <= FEW:
-            unmoved = np.zeros((self.tests, stated.shape[1] - len(START)))
-            starts += [np.hstack([each, unmoved]) for each in self._anywhere.swapaxes(0, 1)]
+        starts = [stated, *(self._anywhere if len(points) <= FEW else ())]
         moved = [[replace(each, nuisance=start, warm=at_rest) for each in points] for start in starts]
         tried = [points, *moved]
         by_try = [model.evaluate_all(each) for each in tried]
         return [best_of_each_test(evaluations) for evaluations in zip(*by_try, strict=True)]
 
-    def other_nuisances(self, model: Model, evaluation: Evaluation) -> np.ndarray | None:
-        found, stated = evaluation.point.nuisance.copy(), self.start()[0]
-        for test in standing_out(evaluation.chi2_by_test, self.dof):
-            rows = np.array([test])
-            misfit = partial(_misfits, model.on(self.subset(rows)), evaluation.point.subset(rows))
-            starts = [each[test, : len(START)] for each in (found, stated)]
-            found[test, : len(START)] = best_start(misfit, starts, self._anywhere[test])
-        return None if np.array_equal(found, evaluation.point.nuisance) else found
-
     def described(self, point: Point) -> list[dict[str, Any]]:
-        return arrays.described(self, point)
+        starts = 1e3 * self.starts(point)
+        return [
+            {
+                "begins_s": own.begins,
+                "duration_s": own.step * own.channels.shape[1],
+                "highest_hz": 0.5 * own.coefficients / (own.step * own.channels.shape[1]),
+                "noise_from": own.spectra[0].source,
+                "noise_correlation": own.spectra[0].correlation,
+                "natural_periods": own.natural,
+                "start_s": own.starts_at,
+                "start_mm": start[0],
+                "start_mm_per_s": start[1],
+                **_noise(own),
+            }
+            for own, start in zip(self.windows, starts, strict=True)
+        ]
 
     def shown(self, simulated: np.ndarray) -> Arrays:
-        return arrays.arrays(self, simulated)
+        """Motions in time; simulated coefficients (2, T, m) have the frequencies that are compared."""
+        channels = max(len(own.channels) for own in self.windows)
+        longest = max(own.channels.shape[1] for own in self.windows)
+        measured = np.full((self.tests, channels, longest), np.nan)
+        in_time = np.full((len(simulated), *measured.shape), np.nan)
+        for t, own in enumerate(self.windows):
+            size, count = own.channels.shape
+            measured[t, :size, :count] = own.channels
+            part = simulated[:, t, : size * own.coefficients]
+            in_time[:, t, :size, :count] = own.in_time(part.reshape(-1, size, own.coefficients))
+        time = np.array([own.begins + own.step * np.arange(longest) for own in self.windows])
+        noise = np.array([[each.std for each in own.spectra] for own in self.windows])
+        meaning = "simulated motion, with the fitted zero"
+        variables = {
+            "time": (BY_SAMPLE, time, "s", "time from the first sample of the record"),
+            "measured": (BY_CHANNEL, measured, CHANNEL_UNIT, "measured motion"),
+            "simulated": (("model", *BY_CHANNEL), in_time, CHANNEL_UNIT, meaning),
+            "sample_noise": (BY_CHANNEL[:2], noise, CHANNEL_UNIT, "noise of a sample"),
+        }
+        orders = max((own.orders for own in self.windows), key=len)
+        return Arrays(variables, {"channel": [MOTIONS[order] for order in orders]})
 
     def motion(self, fit: Fit) -> Motion:
         return Motion.joined(own.motion for own in self.windows)
@@ -290,7 +312,9 @@ class TransientData(SampledData):
         return Sensors(self.model, self.law, 1.0 / own.step, own.spectra, own.rms, travel, own.orders, drive)
 
 
-def _misfits(model: Model, point: Point, starts: np.ndarray) -> np.ndarray:
-    """Squared misfits (n,) of one test from starts (n, 2); inf where there is no response."""
-    moved = [replace(point, nuisance=np.r_[each, point.nuisance[0, len(START) :]][None]) for each in starts]
-    return np.array([each.chi2 if each.found else np.inf for each in model.evaluate_all(moved)])
+def _noise(own: RecordWindow) -> dict[str, Any]:
+    """Noise of a sample of each channel; null where it was not recorded."""
+    keys = ("noise_displacement_mm", "noise_velocity_mm_per_s", "noise_acceleration_m_per_s2")
+    std = {order: each.std for order, each in zip(own.orders, own.spectra, strict=True)}
+    sizes = enumerate(zip(keys, (1e3, 1e3, 1.0), strict=True))
+    return {key: size * std[order] if order in std else None for order, (key, size) in sizes}

@@ -14,10 +14,10 @@ import numpy as np
 from scipy.fft import dct, idct
 
 from wedgesweep.config import Config
-from wedgesweep.diagnose.decorrelation import Decorrelation
 from wedgesweep.diagnose.fit_data import Motion
 from wedgesweep.diagnose.fit_parameters import Values
 from wedgesweep.diagnose.noise_spectrum import NoiseSpectrum
+from wedgesweep.diagnose.sampled_data import Decorrelation
 from wedgesweep.diagnose.transient.input_noise import (
     InputNoise,
     converted,
