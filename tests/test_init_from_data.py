@@ -355,6 +355,10 @@ def test_runs_side_by_side_and_between_pauses_are_tests(tmp_path):
     text(tmp_path / "two.csv", *twice, header="t,d,F")
     found = begun(tmp_path / "two", tmp_path / "two.csv")
     assert [test.time.size for test in found.tests] == [t.size, t.size]
+    t, d, _ = vibration()  # steady, and once more after an hour
+    text(tmp_path / "two.csv", np.r_[t, t + 3600.0], np.r_[d, d], header="t,d")
+    found = begun(tmp_path / "two", tmp_path / "two.csv")
+    assert [test.kind for test in found.tests] == ["steady", "steady"]
 
 
 def test_sheets_with_titles_and_summaries_are_runs(tmp_path):

@@ -99,27 +99,28 @@ def _with_kind(test: Guessed) -> list[Guessed]:
     elif FORCE in channels and "displacement" not in channels:
         given = channels.pop(FORCE)
         channels[INPUT] = replace(given, keys={**given.keys, "quantity": FORCE})
-    time, signals = _evenly(replace(test, run=replace(test.run, channels=channels)))
-    parts = parts_of(_stamps(test))
-    inside = parts[0].holds(time)
-    kind, reason = kind_of({name: each[inside] for name, each in signals.items()}, time[inside])
+    test = replace(test, run=replace(test.run, channels=channels))
+    parts = [(part, *_evenly(test, part)) for part in parts_of(_stamps(test))]
+    _, time, signals = parts[0]
+    kind, reason = kind_of(signals, time)
     if kind == LOOP:
         channels = {name: each for name, each in channels.items() if name in ("displacement", FORCE)}
     elif kind == TRANSIENT:
         channels.pop(FORCE, None)
     channels = _compared(channels)
     test = replace(test, run=_without(test.run, channels), kind=kind, reason=reason)
+    return [replace(test, part=_begun(*each, kind)) for each in parts]
+
+
+def _begun(part: Part, time: np.ndarray, signals: Mapping[str, np.ndarray], kind: str) -> Part:
+    """A part of a test, from where it is free or steady on."""
     response = next(each for name, each in signals.items() if name != INPUT or len(signals) == 1)
-    begins = from_release if kind == TRANSIENT and INPUT not in channels else None
-    begins = from_steady if kind == STEADY else begins
-    if begins is not None:
-        insides = [part.holds(time) for part in parts]
-        begun = [begins(response[inside], time[inside]) for inside in insides]
-        parts = [
-            part if start is None else replace(part, start=start)
-            for part, start in zip(parts, begun, strict=True)
-        ]
-    return [replace(test, part=part) for part in parts]
+    start = None
+    if kind == STEADY:
+        start = from_steady(response, time)
+    elif kind == TRANSIENT and INPUT not in signals:
+        start = from_release(response, time)
+    return part if start is None else replace(part, start=start)
 
 
 def _compared(channels: Mapping[str, Chosen]) -> dict[str, Chosen]:
@@ -152,12 +153,12 @@ def _stamps(test: Guessed) -> np.ndarray:
     return np.arange(first.values.size) / (test.rate or UNKNOWN_RATE)
 
 
-def _evenly(test: Guessed) -> tuple[np.ndarray, dict[str, np.ndarray]]:
-    """Even times (n,) in s and signals (n,), as far as a look needs them; those of other files are 0."""
+def _evenly(test: Guessed, part: Part) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+    """Even times (n,) in s of a part and signals (n,), as far as a look needs them; of other files 0."""
     stamps = _stamps(test)
     channels = test.run.channels
     own = {name: each.values for name, each in channels.items() if "file" not in each.keys}
-    good = np.abs(stamps) < HUGE
+    good = (np.abs(stamps) < HUGE) & part.holds(stamps)
     order = np.argsort(stamps[good], kind="stable")
     time = np.linspace(stamps[good].min(), stamps[good].max(), int(good.sum()))
     signals = {}
