@@ -19,8 +19,18 @@ import numpy as np
 
 from wedgesweep.compiled import inlined, inner
 from wedgesweep.hybrid.interface import cycle, event_count, events, fastest, rate
-from wedgesweep.hybrid.recorder import NODES, WEIGHTS, first_sample, record_node, record_sample
-from wedgesweep.hybrid.search import Bracket, Sample, crossing, first_zero, may_graze, searched, zero_near
+from wedgesweep.hybrid.recorder import first_sample, record_node, record_sample
+from wedgesweep.hybrid.search import (
+    Bracket,
+    Sample,
+    crossing,
+    first_zero,
+    may_graze,
+    minimum,
+    sample,
+    searched,
+    zero_near,
+)
 from wedgesweep.hybrid.state import FAILED, NO_EVENT, State
 from wedgesweep.hybrid.step import step_limit
 from wedgesweep.hybrid.vectors import replaced
@@ -30,7 +40,7 @@ from wedgesweep.trigonometry import cosine, sine
 # Displacement and velocity: the first two states of every system.
 X, VELOCITY = 0, 1
 # Scanned intervals per period of the input or of the free motion, whichever is shorter.
-SCAN = 16
+SCAN = 12
 # Coefficients of cosh(sqrt(z)), sinh(sqrt(z)) / sqrt(z), cos(sqrt(z)), sin(sqrt(z)) / sqrt(z), exp(x), and
 # (exp(x) - 1 - x) / x^2: on a piece, where z and x are small, the rest is less than rounding errors.
 EVEN, ODD = (tuple(1.0 / factorial(2 * k + odd) for k in range(8)) for odd in (0, 1))
@@ -44,12 +54,14 @@ SOFT = 1e-6
 NEARLY_ZERO = 1e-12
 # Phase (rad) from which a series of order 3 leads to an event within rounding error.
 CONVERGED = 2e-4
-# The recorder's rule of quadrature, and the end of a piece, which has no weight.
-PLACES, PLACE_WEIGHTS = (*NODES, 1.0), (*WEIGHTS, 0.0)
-# Longest piece that is recorded, over an interval: Gauss' rule of four points leaves 4e-10 of an energy.
-LONGEST_PIECE = 16 / 12
+# Gauss' rule of eight points on [0, 1], and the end of a piece, which has no weight. On the longest piece
+# that is recorded, over an interval, it leaves 4e-11 of an energy.
+_GAUSS = np.polynomial.legendre.leggauss(8)
+PLACES = (*(float(0.5 + 0.5 * node) for node in _GAUSS[0]), 1.0)
+PLACE_WEIGHTS = (*(float(0.5 * weight) for weight in _GAUSS[1]), 0.0)
+LONGEST_PIECE = 5.25
 # Error of the place of an extreme as a share of an interval: the extreme itself has the square of it.
-PLACE_OF_EXTREME = 1e-6
+PLACE_OF_EXTREME = 1e-5
 # Room for the equations of modes, of a slip up and of one down, and for numbers of a mode and quantities.
 SLOTS, MOST_NUMBERS, MOST_QUANTITIES = 2, 16, 34
 # A number that no mode has: a slot is empty. The end of a list of quantities.
@@ -130,11 +142,16 @@ class Phase(NamedTuple):
 
 
 class Linear(NamedTuple):
-    """A mode with its equations; ``slopes``: working space; ``y``: its state, of which x and x' move."""
+    """A mode with its equations; ``y``: its state, of which x and x' move.
+
+    ``values``, ``slopes``: working space, of a mode for the event functions that are watched and their rates,
+    of a record for the rates of what has extremes, and the rates of these.
+    """
 
     motion: Motion
     quantities: Any
     extreme: Any
+    values: Any
     slopes: Any
     y: Any
     mode: Any
@@ -387,6 +404,12 @@ def _rate(rows, i):
     return _quantity(rows[:, RATE:], i)
 
 
+@inlined
+def _sample(i, phase, rows):
+    """Value and rate of a quantity at a phase."""
+    return Sample(_value(_quantity(rows, i), phase), _value(_rate(rows, i), phase))
+
+
 # Events
 
 
@@ -408,7 +431,7 @@ def _at(time, function):
 
 @inlined
 def _watch(phase, linear, present, watched):
-    """Note which event functions may vanish while the mode lasts.
+    """Note which event functions may vanish while the mode lasts, and their samples at its start.
 
     A free motion that nothing drives and no damper feeds stays within its first amplitude.
     """
@@ -428,6 +451,7 @@ def _watch(phase, linear, present, watched):
             least -= abs(each.by_w) * amplitude + abs(each.by_rate) * speed
         if not bounded or least <= 0.0:
             watched[count] = i
+            linear.values[count], linear.slopes[count] = _sample(i, phase, rows)
             count += 1
     watched[count] = NONE
 
@@ -459,12 +483,12 @@ def _first_event(phase, later, span, linear, watched):
     """Time from a phase on and number of the first event in an interval that ends at the phase ``later``."""
     rows, time, first, place = linear.quantities, inf, NO_EVENT, 0
     while watched[place] != NONE:
-        i = watched[place]
+        i, before = watched[place], Sample(linear.values[place], linear.slopes[place])
+        after = _sample(i, later, rows)
+        linear.values[place], linear.slopes[place] = after
         place += 1
-        quantity, slope = _quantity(rows, i), _rate(rows, i)
-        before = Sample(_value(quantity, phase), _value(slope, phase))
-        after = Sample(_value(quantity, later), _value(slope, later))
         if after.value <= 0.0 or may_graze(before, after, span):
+            quantity = _quantity(rows, i)
             from_zero = abs(before.value) <= NEARLY_ZERO * _size(quantity, phase, rows[i, AMPLITUDE])
             function = _Function(quantity, phase, linear.motion)
             found = _first_zero(function, before, after, span, from_zero)
@@ -483,7 +507,8 @@ def follow_linear(state, stop, p, keeping, recorder, work):
     motion, move = _stored_motion(numbers), _stored_move(numbers)
     if motion.step == 0.0:
         return False, state, NO_EVENT
-    linear = Linear(motion, rows, equations.extreme[slot], equations.values[0], y, mode, p)
+    values, slopes = equations.values[0], equations.values[1]
+    linear = Linear(motion, rows, equations.extreme[slot], values, slopes, y, mode, p)
     first = _phase_at(t, y, rows, motion.omega)
     _watch(first, linear, equations.present[slot], equations.watched)
     phase, number = first, NO_EVENT
@@ -551,11 +576,19 @@ def _add_piece(t, span, phase, linear, recorder):
 
 
 @inlined
+def _slope_at(place, phase, linear):
+    """Rate of a quantity, as one, and its sample at a phase."""
+    slope = _rate(linear.quantities, linear.extreme[place])
+    return slope, Sample(_value(slope, phase), _value(_derivative(slope, linear.motion), phase))
+
+
+@inlined
 def _write_slopes(phase, linear):
     """Write the rates of all quantities at a phase."""
     place = 0
     while linear.extreme[place] != NONE:
-        linear.slopes[place] = _value(_rate(linear.quantities, linear.extreme[place]), phase)
+        _, now = _slope_at(place, phase, linear)
+        linear.values[place], linear.slopes[place] = now
         place += 1
 
 
@@ -564,29 +597,50 @@ def _record_extremes(t, span, phase, later, linear, recorder):
     """Record the extremes of displacement, velocity and what decides on events between two phases."""
     place = 0
     while linear.extreme[place] != NONE:
-        slope = _rate(linear.quantities, linear.extreme[place])
-        before, after = linear.slopes[place], _value(slope, later)
-        linear.slopes[place] = after
+        before = Sample(linear.values[place], linear.slopes[place])
+        slope, after = _slope_at(place, later, linear)
+        linear.values[place], linear.slopes[place] = after
         place += 1
-        if before * after < 0.0:
-            time = _zero(slope, phase, later, span, linear.motion)
-            _record_point(t + time, 0.0, _advanced(phase, time, linear.motion), linear, recorder)
+        sign = 1.0 if before.value > 0.0 else -1.0
+        falling, rising = _times(sign, before), _times(sign, after)
+        if rising.value < 0.0:
+            _record_extreme(t, span, phase, (falling, rising), _scaled(slope, sign), linear, recorder)
+        elif may_graze(falling, rising, span):
+            _record_two(t, span, phase, (falling, rising), _scaled(slope, sign), linear, recorder)
+
+
+@inlined
+def _times(sign, sample):
+    return Sample(sign * sample.value, sign * sample.slope)
+
+
+@traced
+def _scaled(quantity, factor):
+    return Quantity(*(factor * each for each in quantity))
 
 
 @inner
-def _zero(quantity, phase, later, span, motion):
-    """Time (s) in an interval at which a quantity that changes its sign there is zero."""
-    sign = 1.0 if _value(quantity, phase) > 0.0 else -1.0
-    falling = Quantity(
-        sign * quantity.constant,
-        sign * quantity.by_w,
-        sign * quantity.by_rate,
-        sign * quantity.by_cosine,
-        sign * quantity.by_sine,
-    )
-    slope = _derivative(falling, motion)
-    before = Sample(_value(falling, phase), _value(slope, phase))
-    after = Sample(_value(falling, later), _value(slope, later))
+def _record_extreme(t, span, phase, ends, slope, linear, recorder):
+    """Record the point in an interval where a slope that is positive at its start is zero.
+
+    ``ends``: samples of the slope at both ends.
+    """
+    before, after = ends
     bracket = Bracket(0.0, before.value, span, after.value)
-    near = crossing(before, after, span)
-    return zero_near(_Function(falling, phase, motion), bracket, near, PLACE_OF_EXTREME * span)
+    near, close = crossing(before, after, span), PLACE_OF_EXTREME * span
+    time = zero_near(_Function(slope, phase, linear.motion), bracket, near, close)
+    _record_point(t + time, 0.0, _advanced(phase, time, linear.motion), linear, recorder)
+
+
+@inner
+def _record_two(t, span, phase, ends, slope, linear, recorder):
+    """Record both extremes in an interval if a slope that is positive at both ends is negative between."""
+    before, after = ends
+    function = _Function(slope, phase, linear.motion)
+    time = minimum(function, 0.0, span, PLACE_OF_EXTREME * span)
+    middle = sample(time, function)
+    if middle.value < 0.0:
+        _record_extreme(t, time, phase, (before, middle), slope, linear, recorder)
+        there, back = _advanced(phase, time, linear.motion), _scaled(slope, -1.0)
+        rest = _times(-1.0, middle), _times(-1.0, after)
+        _record_extreme(t + time, span - time, there, rest, back, linear, recorder)
