@@ -1,20 +1,21 @@
-"""Slip under friction that depends on velocity, as power series: against Newton's equations."""
+"""Slip under friction that depends on velocity, with effects, as power series: against Newton's equations."""
 
 from math import inf, pi
 
 import numpy as np
 import pytest
 
+from tests.physics import compiled_mechanics as mechanics
 from tests.physics.cases import OMEGA_N
-from wedgesweep import friction
+from wedgesweep import excitation, friction
 from wedgesweep.compiled import compiled
 from wedgesweep.hybrid.polynomials import largest_change, polynomial, slope
 from wedgesweep.systems.suspension import events as events_of
 from wedgesweep.systems.suspension import (
     newton,
     parameters,
-    regularised_slip,
     series_events,
+    series_slip,
 )
 from wedgesweep.systems.suspension.modes import ContactMode
 from wedgesweep.systems.suspension.power_series import ORDER
@@ -30,8 +31,29 @@ def case(law="static-dynamic", column_angle_deg=2.5, friction=None, **suspension
     return parameters.compact(parameters.record(law, AMPLITUDE, OMEGA, values, friction or {}))
 
 
-def mode_of(branches):
-    return ContactMode(*branches, 0, 1, 1, 0, 0, 1 if branches[0] == 0 else 0)
+def mode_of(branches, guide=0, direction=0, segment=0):
+    return ContactMode(*branches, guide, 1, 1, direction, segment, 1 if branches[0] == 0 else 0)
+
+
+# Effects (SI), and what they add to a mode, as arguments of ``mode_of``.
+DAMPER, GUIDE = {"viscous_damping": {"coefficient": 30.0}}, {"guide_friction": {"force": 2.0}}
+STRIBECK = {"stribeck": {"peak": 0.05, "velocity": 5e-3}}
+STOP = {"end_stop": {"clearance": 5e-5, "stiffness": 2e4}}
+DIRECTION = {"directional_friction": {"asymmetry": 0.3}}
+WITH_EFFECTS = [
+    pytest.param("static-dynamic", DAMPER | GUIDE, (1, 0), {"guide": 1}, id="damper and guide"),
+    pytest.param("exponential", GUIDE, (0, 0), {"guide": 0}, id="ramp of the guide"),
+    pytest.param("static-dynamic", STRIBECK | DAMPER, (1, -1), {"guide": 1}, id="Stribeck"),
+    pytest.param("static-dynamic", STRIBECK, (1, 0), {"guide": 1}, id="Stribeck beside a ramp"),
+    pytest.param("exponential", STOP, (1, -1), {"segment": 1}, id="end stop"),
+    pytest.param("exponential", DIRECTION, (1, -1), {"direction": 1}, id="direction"),
+    pytest.param("coulomb", STRIBECK, (1, -1), {"guide": 1}, id="set-valued"),
+]
+
+
+def case_with(law, effects):
+    """A case with room for every effect."""
+    return mechanics.with_all_mechanics(parameters.record(law, AMPLITUDE, OMEGA, effects=effects))
 
 
 @compiled
@@ -67,13 +89,15 @@ def mode_while_closed():
 
 
 @compiled
-def equations_of(cases):
-    return regularised_slip.equations_of(mode_while_closed(), cases[0])
+def equations_of(y, mode, constants, cases):
+    return series_slip.equations_of(y, mode, cases[0], constants)
 
 
 def test_up_to_some_displacement_both_faces_surely_carry_load():
     cases, generator = case(), np.random.default_rng(2)
-    limits = [equations_of(cases).loaded, AMPLITUDE * OMEGA**2, *(2 * [cases["friction"]["mu_s"][0]])]
+    unloads = equations_of((0.0, 0.0), mode_of((0, 0)), np.full(32, np.nan), cases).unloads
+    assert unloads[1] == 0.0  # no force depends on velocity
+    limits = [1.0 / unloads[0], AMPLITUDE * OMEGA**2, *(2 * [cases["friction"]["mu_s"][0]])]
     assert 0.0 < limits[0] < inf
 
     def least_force(share):
@@ -86,46 +110,83 @@ def test_up_to_some_displacement_both_faces_surely_carry_load():
 
 
 @compiled
-def expanded(t, y, mode, cases):
+def expanded(t, y, mode, constants, cases):
     """Series of a motion."""
     p = cases[0]
-    return regularised_slip._expanded(t, y, mode, regularised_slip.equations_of(mode, p), p)
-
-
-@compiled
-def acceleration(t, y, mode, cases):
-    """Newton's z'' (m/s^2)."""
-    return newton.forces(t, y, mode, cases[0]).acceleration
+    return series_slip._expanded(t, y, mode, series_slip.equations_of(y, mode, p, constants), p)
 
 
 def start(cases, velocity):
     return 1e-4, velocity * float(cases["friction"]["v_t"][0])
 
 
-@pytest.mark.parametrize("law", LAWS)
-@pytest.mark.parametrize(("branches", "velocity"), MODES)
-def test_a_series_solves_newtons_equations(law, branches, velocity):
-    """What is left of them falls with the power of time that the series leaves out."""
-    cases = case(law)
-    mode, y, t = mode_of(branches), start(cases, velocity), 0.013
-    series = expanded(t, y, mode, cases)
+def check_series(t, y, mode, cases):
+    """What a series leaves of Newton's equations falls with the power of time that it leaves out."""
+    series = expanded(t, y, mode, np.full(32, np.nan), cases)
     assert len(series.velocity) == ORDER + 1
-    assert (series.x[0], series.velocity[0], series.x[1]) == (*y, y[1])
+    assert (series.x[0], series.velocity[0], series.x[1]) == (*y[:2], y[1])
     # A time in which the velocity changes by a good part.
     span, left = 0.15 * min(abs(y[1] / series.velocity[1]), 1.0 / OMEGA), []
     for s in (span, 0.5 * span):
-        x, v = (np.polynomial.Polynomial(each)(s) for each in (series.x, series.velocity))
-        newtons = acceleration(t + s, (float(x), float(v)), mode, cases)
+        x, v = (float(np.polynomial.Polynomial(each)(s)) for each in (series.x, series.velocity))
+        newtons = mechanics.contact_forces(t + s, (x, v, *y[2:]), mode, cases[0]).acceleration
         left.append(abs(np.polynomial.Polynomial(series.velocity).deriv()(s) - newtons))
     assert left[0] < 1e-4 * abs(series.velocity[1])
     rounding = 1e-12 * OMEGA**2 * abs(y[0])
     assert left[1] < left[0] / (0.6 * 2.0**ORDER) + rounding
 
 
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize(("branches", "velocity"), MODES)
+def test_a_series_solves_newtons_equations(law, branches, velocity):
+    cases = case(law)
+    check_series(0.013, start(cases, velocity), mode_of(branches), cases)
+
+
+@pytest.mark.parametrize(("law", "effects", "branches", "more"), WITH_EFFECTS)
+def test_a_series_solves_newtons_equations_with_effects(law, effects, branches, more):
+    cases, speed = case_with(law, effects), {0: 4e-4, 1: 9e-3}[branches[0]]
+    y = mechanics.initial_state(cases, {("", 0): 1e-4, ("", 1): speed})
+    check_series(0.013, y, mode_of(branches, **more), cases)
+
+
+def test_kept_equations_are_those_of_the_mode():
+    """They depend on the segment of the travel and on the branch of the guide."""
+    cases, kept = case_with("static-dynamic", STOP | GUIDE), np.full(32, np.nan)
+    y = mechanics.initial_state(cases)
+    for more in ({"segment": 1}, {"segment": 0}, {"guide": 1}, {"guide": 0}):
+        mode = mode_of((1, -1), **more)
+        assert equations_of(y, mode, kept, cases) == equations_of(y, mode, np.full(32, np.nan), cases)
+
+
+@compiled
+def base_acceleration(t, cases):
+    """Its value and its series from a time on."""
+    return excitation.acceleration(t, cases[0]), excitation.acceleration_expanded(t, cases[0])
+
+
+@pytest.mark.parametrize("harmonics", [[-1j], [-1j, 0.2 - 0.1j, 0.0, 0.05j, 0.0, 0.01]])
+def test_the_series_of_an_input_of_harmonics_is_its_acceleration(harmonics):
+    record, t, later = parameters.record("coulomb", AMPLITUDE, OMEGA), 0.013, 0.02 / OMEGA
+    excitation.set_series(record, np.array(harmonics))
+    cases = parameters.compact(record)
+    series = np.polynomial.Polynomial(base_acceleration(t, cases)[1])
+    for s in (0.0, later):
+        assert series(s) == pytest.approx(base_acceleration(t + s, cases)[0], rel=1e-9)
+    assert most_acceleration(cases) >= max(
+        abs(base_acceleration(s, cases)[0]) for s in np.linspace(0, 0.1, 99)
+    )
+
+
+@compiled
+def most_acceleration(cases):
+    return excitation.largest_acceleration(cases[0])
+
+
 @compiled
 def ends(mode, cases):
     """Ends of a mode."""
-    return series_events.ends_of(mode, cases[0])
+    return series_events.ends_of_velocity(mode, cases[0])
 
 
 @compiled
@@ -141,7 +202,6 @@ def test_a_mode_ends_where_its_event_functions_say(branches, angle):
     found = ends(mode, cases)
     for end, event, side in ((found.low, found.low_event, -1.0), (found.high, found.high_event, 1.0)):
         if not np.isfinite(end):
-            assert event < 0
             continue
         for outward, holds in ((-1e-6, True), (1e-6, False)):
             write_events((0.0, end + side * outward * abs(end)), mode, cases, out)

@@ -36,7 +36,7 @@ def motion(t, record):
 
 
 def steady(record):
-    found = periodic.respond(record, periodic.at_rest(1), periodic.Accuracy(1e-8, 40, 1e-8), 256, 16)
+    found = periodic.respond(record, periodic.at_rest(1), periodic.Accuracy(1e-10, 40, 1e-10), 256, 16)
     assert found.outcome[0] == periodic.OK
     return found.spectra[0]
 

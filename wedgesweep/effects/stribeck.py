@@ -44,6 +44,7 @@ EFFECT = Effect(
 )
 
 
+LINEAR = True  # but for friction that depends on velocity
 # A trial step may look past the end of a branch, where friction that falls with velocity would run away.
 FLAT_BELOW = -1.0
 
@@ -60,14 +61,26 @@ def static(mu, clock, y, p):
     return p.friction.mu_s + p.stribeck.peak if acts(p) else mu
 
 
+@term("stribeck", off="0.0")
+def excess(speed, p):
+    """Coefficient above the threshold velocity less that of the law."""
+    if not acts(p):
+        return 0.0
+    threshold = 0.0 if p.friction.set_valued else p.friction.v_t
+    beyond = max((speed - threshold) / p.stribeck.velocity, FLAT_BELOW)
+    return (p.friction.mu_s - p.friction.mu_d + p.stribeck.peak) * exp(-beyond)
+
+
+@term("stribeck", off="0.0")
+def decay(p):
+    """Relative change of ``excess`` by the speed (s/m)."""
+    return -1.0 / p.stribeck.velocity if acts(p) else 0.0
+
+
 @inlined
 def sliding(mu, speed, p):
     """Coefficient above the threshold velocity, from that of the law."""
-    if not acts(p):
-        return mu
-    threshold = 0.0 if p.friction.set_valued else p.friction.v_t
-    beyond = max((speed - threshold) / p.stribeck.velocity, FLAT_BELOW)
-    return mu + (p.friction.mu_s - p.friction.mu_d + p.stribeck.peak) * exp(-beyond)
+    return mu + excess(speed, p)
 
 
 def bound(mu: float, p: np.void) -> float:

@@ -48,11 +48,17 @@ def next_segment(segment, upward, p):
 
 
 @inlined
+def ends(segment, p):
+    """Lower and upper end (m) of a segment."""
+    inner, outer = _bound(abs(segment), p), _bound(abs(segment) + 1, p)
+    return inner if segment > 0 else -outer, -inner if segment < 0 else outer
+
+
+@inlined
 def write_events(x, segment, p, place, out):
     """Write the distances (m) to the lower and the upper end of a segment."""
-    number = abs(segment)
-    out[place] = x - _bound(number, p) if segment > 0 else x + _bound(number + 1, p)
-    out[place + 1] = -_bound(number, p) - x if segment < 0 else _bound(number + 1, p) - x
+    low, high = ends(segment, p)
+    out[place], out[place + 1] = x - low, high - x
 
 
 @inlined

@@ -17,7 +17,7 @@ import numpy as np
 
 from wedgesweep import kernels
 from wedgesweep.compiled import by_record, function_of, inlined
-from wedgesweep.effects import hooks
+from wedgesweep.effects import hooks, stribeck
 from wedgesweep.friction.names import LAW_NAMES, OSCILLATOR_LAWS
 
 # The laws by name; a law's place is its code in parameter records. ``register`` adds another.
@@ -103,6 +103,12 @@ def static(clock, y, p):
 def sliding(speed, p):
     """Coefficient above the threshold velocity, at a speed (m/s)."""
     return hooks.sliding(_sliding(speed, p), speed, p)
+
+
+@inlined
+def is_constant(p):
+    """Whether the coefficient above the threshold velocity does not depend on velocity."""
+    return exponent(p) == 0.0 and not stribeck.acts(p)
 
 
 @inlined

@@ -33,7 +33,7 @@ from wedgesweep.hybrid.search import (
 )
 from wedgesweep.hybrid.state import FAILED, NO_EVENT, State
 from wedgesweep.hybrid.step import step_limit
-from wedgesweep.hybrid.vectors import replaced
+from wedgesweep.hybrid.vectors import with_motion
 from wedgesweep.traced import traced
 from wedgesweep.trigonometry import cosine, sine
 
@@ -42,7 +42,7 @@ X, VELOCITY = 0, 1
 # Scanned intervals per period of the input or of the free motion, whichever is shorter.
 SCAN = 12
 # Coefficients of cosh(sqrt(z)), sinh(sqrt(z)) / sqrt(z), cos(sqrt(z)), sin(sqrt(z)) / sqrt(z), exp(x), and
-# (exp(x) - 1 - x) / x^2: on a piece, where z and x are small, the rest is less than rounding errors.
+# (exp(x) - 1 - x) / x^2: over an interval, where z and x are small, the rest is less than rounding errors.
 EVEN, ODD = (tuple(1.0 / factorial(2 * k + odd) for k in range(8)) for odd in (0, 1))
 COSINE, SINE = (tuple((-1) ** k * c for k, c in enumerate(each)) for each in (EVEN, ODD))
 EXPONENTIAL, EXPONENTIAL_BEYOND = (tuple(1.0 / factorial(k + n) for k in range(14)) for n in (0, 2))
@@ -190,7 +190,7 @@ def _turn(angle: Any) -> tuple[Any, Any]:
 
 @traced
 def _undamped(time, motion):
-    """The move of a spring over a time (s), at most a piece."""
+    """The move of a spring over a time (s), at most an interval."""
     angle, z = motion.omega * time, motion.by_x * time * time
     even, s = _polynomial(EVEN, z), time * _polynomial(ODD, z)
     return Move(*_turn(angle), even, s, 0.0 * s, even, motion.by_x * s, 0.0 * s)
@@ -198,7 +198,7 @@ def _undamped(time, motion):
 
 @traced
 def _damped(time, motion):
-    """The move of a spring, a damper and a constant force over a time (s), at most a piece."""
+    """The move of a spring, a damper and a constant force over a time (s), at most an interval."""
     angle, half, ramp = motion.omega * time, 0.5 * motion.by_velocity, motion.by_velocity * time
     z, grown = (motion.by_x + half * half) * time * time, _polynomial(EXPONENTIAL, half * time)
     even, s = grown * _polynomial(EVEN, z), grown * time * _polynomial(ODD, z)
@@ -210,7 +210,7 @@ def _damped(time, motion):
 
 @inlined
 def _move(time, motion):
-    """The move over a time (s), at most a piece."""
+    """The move over a time (s), at most an interval."""
     if motion.by_velocity == 0.0 and motion.constant == 0.0:
         return _undamped(time, motion)
     return _damped(time, motion)
@@ -229,7 +229,7 @@ def _moved(phase, move):
 
 @inlined
 def _advanced(phase, time, motion):
-    """The phase some time (s) later, at most a piece."""
+    """The phase some time (s) later, at most an interval."""
     return _moved(phase, _move(time, motion))
 
 
@@ -271,7 +271,7 @@ def _state(phase, y, rows):
     """State of a phase; ``y``: the other states."""
     x = rows[X, 0] + phase.w + (rows[X, 3] * phase.cosine + rows[X, 4] * phase.sine)
     velocity = phase.rate + (rows[VELOCITY, 3] * phase.cosine + rows[VELOCITY, 4] * phase.sine)
-    return replaced(replaced(y, X, x), VELOCITY, velocity)
+    return with_motion(y, x, velocity)
 
 
 # Equations
@@ -280,7 +280,7 @@ def _state(phase, y, rows):
 @inner
 def _probe(t, x, velocity, y, mode, p, out):
     """Acceleration (m/s^2) at a time and state; writes the event functions there."""
-    there = replaced(replaced(y, X, x), VELOCITY, velocity)
+    there = with_motion(y, x, velocity)
     rates, forces = rate(t, there, mode, p)
     events(forces, t, there, mode, p, out)
     return rates[VELOCITY]
@@ -542,28 +542,50 @@ def _record_point(t, weight, phase, linear, recorder):
 @inner
 def _record(t, end, phase, linear, recorder):
     """Record a mode from a phase at time t to ``end`` (s)."""
-    motion = linear.motion
-    pieces = int((end - t) / (LONGEST_PIECE * motion.step)) + 1
-    span, turn = (end - t) / pieces, _move(recorder.step, motion)
-    if recorder.summed:
-        _record_point(t, 0.0, phase, linear, recorder)
+    _record_samples(t, end, phase, linear, recorder)
+    if not recorder.summed:
+        return
+    pieces = int((end - t) / (LONGEST_PIECE * linear.motion.step)) + 1
+    span = (end - t) / pieces
+    _record_point(t, 0.0, phase, linear, recorder)
     for _ in range(pieces):
-        first = first_sample(t, recorder)
-        sampled = _advanced(phase, recorder.start + first * recorder.step - t, motion)
-        for i in range(first, first_sample(t + span, recorder)):
-            y = _state(sampled, linear.y, linear.quantities)
-            record_sample(i, y, linear.mode, recorder, linear.p)
-            sampled = _moved(sampled, turn)
-        if recorder.summed:
-            _add_piece(t, span, phase, linear, recorder)
-        t, phase = t + span, _advanced(phase, span, motion)
-    if recorder.summed:
-        _record_point(t, 0.0, phase, linear, recorder)
+        t, phase = _add_piece(t, span, phase, linear, recorder)
+    _record_point(t, 0.0, phase, linear, recorder)
+
+
+@inlined
+def _steps(time, motion):
+    """Number of equal moves for a time (s), each at most an interval, and the move."""
+    count = int(time / motion.step) + 1
+    return count, _move(time / count, motion)
+
+
+@inlined
+def _repeated(phase, steps):
+    """The phase after some equal moves."""
+    count, move = steps
+    for _ in range(count):
+        phase = _moved(phase, move)
+    return phase
+
+
+@inlined
+def _record_samples(t, end, phase, linear, recorder):
+    """Store the samples of a mode from a phase at time t to ``end`` (s)."""
+    first, motion = first_sample(t, recorder), linear.motion
+    phase = _repeated(phase, _steps(max(recorder.start + first * recorder.step - t, 0.0), motion))
+    between = _steps(recorder.step, motion)
+    for i in range(first, first_sample(end, recorder)):
+        record_sample(i, _state(phase, linear.y, linear.quantities), linear.mode, recorder, linear.p)
+        phase = _repeated(phase, between)
 
 
 @inlined
 def _add_piece(t, span, phase, linear, recorder):
-    """Add a piece (s) from a phase on to the sums: integrals by quadrature, extremes between its nodes."""
+    """Add a piece (s) from a phase on to the sums: integrals by quadrature, extremes between its nodes.
+
+    Returns time and phase at its end.
+    """
     place = 0.0
     _write_slopes(phase, linear)
     for i in range(len(PLACES)):
@@ -573,6 +595,7 @@ def _add_piece(t, span, phase, linear, recorder):
         if PLACE_WEIGHTS[i] > 0.0:
             _record_point(t + width, PLACE_WEIGHTS[i] * span, later, linear, recorder)
         t, phase, place = t + width, later, PLACES[i]
+    return t, phase
 
 
 @inlined

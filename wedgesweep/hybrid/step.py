@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 from wedgesweep.compiled import by_type, inlined
 from wedgesweep.hybrid.interface import error_scales
 from wedgesweep.hybrid.polynomials import polynomial, slope
-from wedgesweep.hybrid.vectors import combination, weighted
+from wedgesweep.hybrid.vectors import combination, weighted, with_motion
 
 # Share of a state's natural size, times rtol, that an error may always have.
 ABSOLUTE = 1e-2
@@ -59,7 +59,7 @@ def _quartic_slope(share, step):
 
 
 class SeriesStep(NamedTuple):
-    """A step from t, h (s) long, from a state ``start``: both states are polynomials in time."""
+    """A step from t, h (s) long, from a state ``start``: its first two are polynomials, the others rest."""
 
     t: float
     h: float
@@ -70,13 +70,14 @@ class SeriesStep(NamedTuple):
 @inlined
 def _series_output(share, step):
     x, velocity = step.coefficients
-    return polynomial(x, share * step.h), polynomial(velocity, share * step.h)
+    return with_motion(step.start, polynomial(x, share * step.h), polynomial(velocity, share * step.h))
 
 
 @inlined
 def _series_slope(share, step):
-    x, velocity = step.coefficients
-    return step.h * slope(x, share * step.h), step.h * slope(velocity, share * step.h)
+    (x, velocity), h = step.coefficients, step.h
+    at_rest = combination(0.0, (1.0,), (step.start,))
+    return with_motion(at_rest, h * slope(x, share * h), h * slope(velocity, share * h))
 
 
 _OUTPUT = {Step: _quartic_output, SeriesStep: _series_output}

@@ -59,3 +59,9 @@ def store(y, out):
 def replaced(y, place, value):
     """The vector with another number at a place."""
     return _set_item(y, place, value)
+
+
+@inlined
+def with_motion(y, x, velocity):
+    """The state vector with another displacement and velocity, the first two states of every system."""
+    return replaced(replaced(y, 0, x), 1, velocity)

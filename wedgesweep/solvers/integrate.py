@@ -44,8 +44,8 @@ from wedgesweep.hybrid.step import SHORTEST, dense_output, step_limit
 from wedgesweep.solvers import explicit, implicit
 
 EVENTS_PER_PERIOD = 1000
-# Room for event functions.
-MOST_EVENTS = 32
+# Room for event functions, and for numbers that a system keeps of a case.
+MOST_EVENTS, MOST_CONSTANTS = 32, 32
 # First step of a run, as a share of a period.
 FIRST_STEP = 1e-3
 # Least number of steps per period of the fastest input: a longer step could miss a whole motion. While
@@ -74,7 +74,8 @@ class Workspace(NamedTuple):
     """Tolerance of a run, counts of its rate evaluations, steps and events, and working space.
 
     ``counts`` has shape (3,); the event functions at places of a step have shape (MOST_EVENTS,);
-    ``equations``: of linear modes.
+    ``equations``: of linear modes; ``constants`` (MOST_CONSTANTS,): what a system keeps of a case, with NaN
+    first where there is nothing yet.
     """
 
     rtol: float
@@ -84,12 +85,15 @@ class Workspace(NamedTuple):
     at_end: Any
     at_point: Any
     equations: Equations
+    constants: Any
 
 
 def workspace(rtol: float) -> Workspace:
     """A fresh Workspace."""
     start, middle, end, point = np.full((4, MOST_EVENTS), inf)
-    return Workspace(rtol, np.zeros(3, np.int64), start, middle, end, point, room())
+    return Workspace(
+        rtol, np.zeros(3, np.int64), start, middle, end, point, room(), np.full(MOST_CONSTANTS, nan)
+    )
 
 
 class _EventFunction(NamedTuple):
@@ -292,6 +296,7 @@ def integrate(state, keep_from, stop, p, recorder, work):
         return FAILED, state
     limit = work.counts[2] + EVENTS_PER_PERIOD * (1.0 + periods)
     forget(work.equations)
+    work.constants[0] = nan
     while state.t < stop:
         if leaves(state.y, state.mode, p):
             return HANDED_OVER, state

@@ -75,7 +75,7 @@ def linear(mode, p):
     """Whether the mass sticks, or slips under friction that does not depend on velocity."""
     if not (p.oscillator.linear and excitation.is_sine(p)):
         return False
-    return stuck(mode, p) or (abs(mode.column) == 1 and friction.exponent(p) == 0.0)
+    return stuck(mode, p) or (abs(mode.column) == 1 and friction.is_constant(p))
 
 
 @implement(interface.free, OSCILLATOR)

@@ -63,7 +63,7 @@ def linear(mode, p):
         return False
     bolster = mode.bolster != 0 or p.geometry.bolster_ratio == 0.0
     guide = mode.guide != 0 or not guide_friction.acts(p)
-    return mode.column != 0 and bolster and guide and friction.exponent(p) == 0.0
+    return mode.column != 0 and bolster and guide and friction.is_constant(p)
 
 
 @implement(interface.free, SUSPENSION)

@@ -170,6 +170,12 @@ def loads_per_displacement(p):
 
 
 @inlined
+def with_base(load, acceleration):
+    """The loads under another acceleration of the table (m/s^2)."""
+    return Loads(load.tangential, load.normal, load.vertical, load.lateral, load.frame, acceleration)
+
+
+@inlined
 def closed_contacts(p):
     """``Closed`` of a case."""
     s, g = p.suspension, p.geometry

@@ -96,10 +96,9 @@ def _kits(names: tuple[str, ...], series: bool) -> tuple[np.dtype, ...]:
     go_with_opening = [*plain, *(name for name in names if name in lift_off.GO_WITH)]
     all_but_opening = [name for name in names if name != lift_off.NAME]
     opens = records.effect_parts([lift_off.NAME])
-    # Records with ``base`` have faster methods (follow.py); those with a series have none.
-    part, base = (records.SERIES, []) if series else ([], [("base", np.int64)])
+    part = records.SERIES if series else []
     return (
-        _dtype(base + TURNS + part, plain),
+        _dtype(TURNS + part, plain),
         _dtype(part, own + plain),
         _dtype(part, all_but_opening),
         _dtype(opens + part, plain),

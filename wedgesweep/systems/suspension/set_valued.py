@@ -12,10 +12,10 @@ from wedgesweep.systems.suspension.newton import (
     ROUNDING,
     UNIT_BASE,
     Coefficients,
-    Loads,
     loads,
     reactions,
     solve_for_signs,
+    with_base,
 )
 
 # Phase (rad) after which a quantity that passes zero now exceeds rounding errors.
@@ -36,12 +36,6 @@ def acceleration_on_breakaway(t, y, direction, segment, p):
     )
 
 
-@inlined
-def _with_base(load, acceleration):
-    """The loads under another acceleration of the base."""
-    return Loads(load.tangential, load.normal, load.vertical, load.lateral, load.frame, acceleration)
-
-
 @inner
 def _balance(load, column_mu, bolster_mu, p):
     """Base acceleration at which z'' = 0, and z'' per base acceleration.
@@ -49,10 +43,10 @@ def _balance(load, column_mu, bolster_mu, p):
     NaN if a normal force is negative there.
     """
     mu = Coefficients(column_mu, bolster_mu, 0.0, 0.0)
-    at_rest = reactions(_with_base(load, 0.0), mu, p)[0].acceleration
+    at_rest = reactions(with_base(load, 0.0), mu, p)[0].acceleration
     inertia = reactions(UNIT_BASE, mu, p)[0].acceleration
     limit = -at_rest / inertia
-    there = reactions(_with_base(load, limit), mu, p)[0]
+    there = reactions(with_base(load, limit), mu, p)[0]
     return limit if min(there.column, there.bolster) > 0.0 else nan, inertia
 
 

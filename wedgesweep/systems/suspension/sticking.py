@@ -9,7 +9,6 @@ from math import asin, ceil, inf, pi
 from wedgesweep import excitation, sampled_input
 from wedgesweep.compiled import inlined, inner, term
 from wedgesweep.effects import fixture_resonance, input_distortion, states, stray_vibration
-from wedgesweep.hybrid.interface import follow, implement
 from wedgesweep.hybrid.recorder import record_constant
 from wedgesweep.hybrid.state import NO_EVENT, State
 from wedgesweep.systems.suspension.modes import COLUMN, VELOCITY, stuck
@@ -88,10 +87,9 @@ def _waits_for_input(mode, p):
     return rests
 
 
-@implement(follow, "suspension")
 @inlined
 def follow_stuck(state, stop, p, keeping, recorder, work):
-    """See the interface: follows a bolster that sticks."""
+    """As ``interface.follow``, for a bolster that sticks."""
     if not _waits_for_input(state.mode, p):
         return False, state, NO_EVENT
     forward, backward, loaded = _breakaway_range(state.y, state.mode.segment, p)
