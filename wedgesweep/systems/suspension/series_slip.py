@@ -187,11 +187,11 @@ def _before_growth(h, series, rtol, p):
         return h
     speed, change = abs(series.velocity[0]), largest_change(series.velocity, h)
     for ratio in (abs(p.geometry.column_ratio), abs(p.geometry.bolster_ratio)):
-        share = stribeck.excess(ratio * speed, p) / friction.sliding(ratio * speed, p)
-        most, growth = max(MOST_GROWTH, log(rtol / share)), -stribeck.decay(p) * ratio * change
-        if growth > most:
-            h *= most / growth
-            change *= most / growth
+        growth = -stribeck.decay(p) * ratio * change
+        if growth > MOST_GROWTH:
+            share = stribeck.excess(ratio * speed, p) / friction.sliding(ratio * speed, p)
+            less = min(max(MOST_GROWTH, log(rtol / share)) / growth, 1.0)
+            h, change = less * h, less * change
     return h
 
 
