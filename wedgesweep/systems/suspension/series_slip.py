@@ -27,6 +27,7 @@ from wedgesweep.systems.suspension.power_series import (
     expand_powers,
 )
 from wedgesweep.systems.suspension.series_events import ends_of_displacement, ends_of_velocity, first_event
+from wedgesweep.traced import traced
 
 # Least number of steps per period of the input; and while they are recorded, so that each has one extreme.
 LEAST_STEPS, LEAST_STEPS_RECORDED = 6, 12
@@ -45,7 +46,7 @@ SECOND_DIFFERENCE = 0.5
 # Equations
 
 
-@inlined
+@traced
 def _without_contact(load, closed):
     """What ``Equations`` hold, under loads."""
     return (
@@ -55,14 +56,14 @@ def _without_contact(load, closed):
     )
 
 
-@inlined
+@inner
 def _at(x, velocity, y, mode, closed, p):
     """The same at a displacement (m) and a velocity (m/s), without an acceleration of the table."""
     load = loads(0.0, with_motion(y, x, velocity), mode, p)
     return _without_contact(with_base(load, 0.0), closed)
 
 
-@inlined
+@traced
 def _change(before, after):
     return after[0] - before[0], after[1] - before[1], after[2] - before[2]
 
@@ -132,7 +133,7 @@ def equations_of(y, mode, p, constants):
 # Series
 
 
-@inlined
+@inner
 def _face(ratio, branch, y, mode, p):
     """Friction of a face whose slip velocity is ratio z'."""
     factor = directional_friction.factor(mode.direction, p)
