@@ -126,7 +126,7 @@ def test_before_the_base_model_is_fitted_there_is_nothing_to_report(bench, monke
 
 
 def test_the_time_limit_is_looked_at_in_every_simulation(bench):
-    """The share that is used up rises with each look; a diagnosis has some 1,600, single effects 120 to 180."""
+    """The share used up rises with each look; a diagnosis has some 1,600, single effects 120 to 180."""
     done = []
     for looks in (3, 300):
         count = itertools.count()
