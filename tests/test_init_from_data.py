@@ -249,6 +249,7 @@ def test_friction_that_differs_from_file_to_file_is_no_damping(tmp_path):
 @pytest.mark.acceptance
 def test_a_damper_does_not_stand_for_the_friction_of_a_shaken_mass(tmp_path):
     files, t, spring, damping, friction = [], np.arange(4000) / 250.0, 1400.0, 2.3, 1.2
+    fastest = 0.0
     for frequency in (3.0, 5.5, 8.0):
         omega = 2.0 * np.pi * frequency
 
@@ -258,6 +259,7 @@ def test_a_damper_does_not_stand_for_the_friction_of_a_shaken_mass(tmp_path):
 
         x, v = solve_ivp(rate, (0.0, t[-1]), [0.0, 0.0], t_eval=t, method="LSODA", rtol=1e-6).y
         mass = -spring * x - damping * v - friction * np.tanh(v / 1e-3)
+        fastest = max(fastest, np.abs(v).max())
         name, header = tmp_path / f"{frequency:g}.csv", "t,table m/s^2,mass m/s^2,x mm"
         files.append(text(name, t, 3.0 * np.sin(omega * t), mass, 1e3 * x, header=header))
     # The run-up from rest is cut off: free vibration dies away with damping / 2 = 1.15 /s and by friction.
@@ -272,7 +274,8 @@ def test_a_damper_does_not_stand_for_the_friction_of_a_shaken_mass(tmp_path):
     # Higher harmonics of a displacement are too small to count; the numbers are said to be good to 10 %.
     assert found["spring_N_per_mm"] == pytest.approx(1e-3 * spring, rel=0.1)
     assert found["damping_N_s_per_m"] < 2.0 * damping
-    assert float(re.search(r"shows about (\S+) N", first)[1]) == pytest.approx(friction, rel=0.1)
+    # Where no damper is needed clearly, friction takes its part.
+    assert friction < float(re.search(r"shows about (\S+) N", first)[1]) < friction + damping * fastest
 
 
 def test_an_earthquake_tells_a_spring_whose_mass_sticks_in_between(tmp_path):

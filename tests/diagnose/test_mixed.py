@@ -129,10 +129,10 @@ def test_the_start_of_a_frame_has_columns_of_its_own_beside_steady_tests(tmp_pat
     )
     here = model.evaluate(start)
     columns = jacobian(model, here).by_nuisance[..., data.eliminated :]
-    # Amplitude of the steady test, start of the release; phase of a tone, starts of column and frame.
+    # Amplitude of the steady test, starts of the release, of column and frame.
     steady, *windows = (columns != 0.0).any(axis=1).tolist()
-    assert steady == [True] + 7 * [False]
-    assert windows == [[False, True, True, False, False, False, True, True]] * 3
+    assert steady == [True] + 6 * [False]
+    assert windows == [[False, True, True, False, False, True, True]] * 3
     assert data.extra_nuisances(("fixture_resonance",)).tolist() == [0, 2, 2, 2]
     assert len(data.nuisances(())) == 3
 

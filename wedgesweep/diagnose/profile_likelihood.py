@@ -79,6 +79,8 @@ def profile_likelihood(fit: Fit, each: Callable[[Callable, list], list]) -> Fit:
     """The fit, or a better one found beside it, with a covariance as wide as its profile likelihood.
 
     Intervals never become narrower than by the curvature: a fit with a parameter held may stop short as well.
+    Only where the curvature tells nothing, and a parameter is at a bound or belongs to a switch, does the
+    profile alone count.
 
     Parameters
     ----------
@@ -114,7 +116,11 @@ def _lowest(fit: Fit, others: Sequence[Fit]) -> Fit:
 def _profile_end(side: _Side, nearest: Fit) -> ProfileEnd:
     """Move one parameter out until chi-squared has risen by about RISE, or is lower than at the fit."""
     fit, furthest = side.fit, side.furthest
-    if fit.model.hypothesis.parameters[side.parameter].switches:
+    low, high = fit.model.low[side.parameter], fit.model.high[side.parameter]
+    switches = fit.model.hypothesis.parameters[side.parameter].switches
+    if TWO_SIDED * side.std > high - low and (switches or fit.x[side.parameter] in (low, high)):
+        return _end_by_bisection(side, nearest)
+    if switches:
         return _end_beyond_ridges(side, nearest)
     end, held = TWO_SIDED, nearest
     for tries in range(TRIES):
@@ -128,6 +134,25 @@ def _profile_end(side: _Side, nearest: Fit) -> ProfileEnd:
         if rise > RISE_SHARE * RISE or off == furthest:
             break
     return ProfileEnd(end, fit)
+
+
+def _end_by_bisection(side: _Side, nearest: Fit) -> ProfileEnd:
+    """The end where the curvature tells nothing, by bisection between the fit and the bound on one side.
+
+    ``nearest``: the fit at the bound, which comes before the end by the curvature.
+    """
+    low, high = 0.0, side.furthest
+    middle = high
+    for tries in range(TRIES if high else 0):
+        held = side.held(middle, side.fit) if tries else nearest
+        rise = held.chi2 - side.fit.chi2
+        if rise < -LOWER:
+            return ProfileEnd(middle, held)
+        low, high = (middle, high) if rise < RISE else (low, middle)
+        if low == high:
+            break
+        middle = 0.5 * (low + high)
+    return ProfileEnd(high, side.fit)
 
 
 def _end_beyond_ridges(side: _Side, nearest: Fit) -> ProfileEnd:

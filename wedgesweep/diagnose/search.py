@@ -293,6 +293,8 @@ def single_fit(search: Search, effect: str, base: Fit) -> SingleFit:
     if implausible or _brings_alignment(data, effect) or model.hypothesis.switches:
         # Fitted without the effect, the base model's own parameters are, or may be, far from the truth.
         fresh = data.search_nuisances(rough, [model.start(None, x) for x in points])
+        if model.hypothesis.switches and data.uncertain:
+            fresh = [_with_own_numbers(rough, each) for each in fresh]
         evaluations = evaluations + fresh
         if implausible:
             evaluations = evaluations + beside_stated(model, fresh)
@@ -301,6 +303,15 @@ def single_fit(search: Search, effect: str, base: Fit) -> SingleFit:
     if _brings_alignment(data, effect):
         fit = _aligned(fit)
     return SingleFit(Explanation(fit), scan, fit.model.data)
+
+
+def _with_own_numbers(model: Model, start: Evaluation) -> Evaluation:
+    """A start of an effect that switches, after a step of all numbers but its first, which is scanned.
+
+    Such an effect makes another model of the base model, with other uncertain numbers. Where these stay as
+    stated, or as fitted without the effect, the start closest to the truth may look worst.
+    """
+    return minimise(model.holding(0, start.point.x[0]), start, 1).evaluation
 
 
 def best_of(

@@ -92,7 +92,7 @@ def _write_equations(y, mode, p, out):
     by_x = _change(at_rest, _at(1.0, 0.0, y, mode, closed, p))
     by_v = _change(at_rest, _at(0.0, 1.0, y, mode, closed, p))
     by_u = _without_contact(UNIT_BASE, closed)
-    most, most_u = _largest_coefficient(y, mode, p), excitation.largest_acceleration(p)
+    most, most_u = _largest_coefficient(y, mode, p), abs(excitation.sine_amplitude(p)) * p.input.omega**2
     # Normal forces times the determinant are linear in all of these: least at a corner.
     for column_mu, bolster_mu in ((most, most), (most, -most), (-most, most), (-most, -most)):
         rest = _normal_forces(at_rest, column_mu, bolster_mu, closed)
@@ -270,7 +270,7 @@ def _on_ramp(mode):
 @inlined
 def has_series(mode, p):
     """Whether power series follow a mode that slips: not where friction is constant and all is linear."""
-    if not (p.geometry.linear and excitation.is_harmonic(p)) or held(mode):
+    if not (p.geometry.linear and excitation.is_sine(p)) or held(mode):
         return False
     if mode.column_sign < 0 or mode.bolster_sign < 0 or linear(mode, p):
         return False
