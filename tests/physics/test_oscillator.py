@@ -72,6 +72,22 @@ def test_wall_friction_on_a_moving_base_is_that_under_the_force_of_spring_and_da
     assert moved.numbers["phase_lag"] == pytest.approx(lag, abs=1e-8)
 
 
+@pytest.mark.parametrize("r", [0.3, 2.5])
+def test_a_mass_on_a_fast_belt_is_a_linear_oscillator_with_a_constant_load(r):
+    """It slips in one direction for the whole window, which is one mode of many scanned intervals."""
+    force, damping, friction, belt, omega = 3.0, 12.0, 0.4, 1.0, r * OMEGA_N
+    on_belt = oscillator(damping=damping, contact="belt", belt_velocity=belt)
+    case = parameters.record("coulomb", force, omega, on_belt, coulomb(friction), input_kind="force")
+    found = steady(case, settle=100, periods=4).numbers
+    amplitude = force / abs(K - M * omega**2 + 1j * damping * omega)
+    assert found["amplitude_ratio"] == pytest.approx(amplitude * K / force, rel=1e-9)
+    assert found["peak_velocity"] == pytest.approx(amplitude * omega, rel=1e-9)
+    assert found["mean_displacement"] == pytest.approx(friction / K, rel=1e-9)
+    taken = pi * damping * omega * amplitude**2 + friction * belt * 2.0 * pi / omega
+    assert found["dissipated_energy"] == pytest.approx(taken, rel=1e-9)
+    assert found["supplied_energy"] == pytest.approx(taken, rel=1e-9)
+
+
 # A block on a belt (Leine et al., 1998): k = m = F_s = 1, belt 0.2, F = F_s / (1 + 3 |v|).
 BLOCK = {"mass": 1.0, "spring": 1.0, "normal_force": 1.0, "contact": "belt", "belt_velocity": 0.2}
 HYPERBOLIC = {"static": 1.0, "threshold_velocity": 1.0 / 3.0}
