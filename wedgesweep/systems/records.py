@@ -95,7 +95,7 @@ def acting(p: np.void, names: Iterable[str]) -> list[str]:
 
 
 def is_linear(name: str) -> bool:
-    """Whether an effect has no states, and its forces are linear in displacement and velocity in a mode."""
+    """Whether an effect has no states, and its forces but friction are linear in x and x' in a mode."""
     return getattr(known.REGISTERED[name], "LINEAR", False)
 
 

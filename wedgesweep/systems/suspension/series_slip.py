@@ -8,7 +8,7 @@ from math import inf, isfinite, log, pi, sqrt
 from wedgesweep import excitation, friction
 from wedgesweep.compiled import inlined, inner, term
 from wedgesweep.effects import directional_friction, guide_friction, stribeck, travel
-from wedgesweep.hybrid.interface import error_scales, fastest, linear
+from wedgesweep.hybrid.interface import error_scales, fastest
 from wedgesweep.hybrid.polynomials import largest_change, polynomial
 from wedgesweep.hybrid.recorded_step import record_step
 from wedgesweep.hybrid.state import FAILED, NO_EVENT, State
@@ -269,10 +269,10 @@ def _on_ramp(mode):
 
 @inlined
 def has_series(mode, p):
-    """Whether power series follow a mode that slips: not where friction is constant and all is linear."""
+    """Whether power series follow a mode that slips and is not ``linear``."""
     if not (p.geometry.linear and excitation.is_sine(p)) or held(mode):
         return False
-    if mode.column_sign < 0 or mode.bolster_sign < 0 or linear(mode, p):
+    if mode.column_sign < 0 or mode.bolster_sign < 0:
         return False
     falls, exponent = stribeck.acts(p), friction.exponent(p)
     if p.friction.set_valued:
