@@ -46,7 +46,8 @@ def test_help_and_version():
         assert "_WEDGESWEEP_COMPLETE=bash_source" in invoke(*arguments, code=0 if arguments else 2)
     assert "0." in invoke("--version")
     for name in cli.commands:
-        assert "--help" in invoke(name, "-h")
+        told = invoke(name, "-h")
+        assert all(option in told for option in ("--help", "--quiet", "--verbose"))
     told = invoke("plot", "-h")
     for kind in figures.FIGURES.values():
         assert f"{kind.name} " in told
@@ -308,6 +309,9 @@ def test_case_agrees_with_the_sweep(here):
     assert (here / "one.png").exists()
     told = invoke("case", "few.toml", "--beta", 1, "--amplitude", 1, "-o", "few", code=2)
     assert "few.nc: holds a sweep" in told
+    xr.Dataset({"mine": 1.0}).to_netcdf("mine.nc")
+    told = invoke("case", "few.toml", "--beta", 1, "--amplitude", 1, "-o", "mine", code=2)
+    assert "mine.nc: holds a sweep or other data" in told
 
 
 def test_case_that_fails(here):
@@ -382,12 +386,6 @@ def test_plot_faults(here, drawn_dataset, arguments, words):
     assert sorted(path.name for path in here.iterdir()) == ["few.toml", "locked.toml"]
 
 
-def test_a_case_takes_the_place_of_no_other_data(here):
-    xr.Dataset({"mine": 1.0}).to_netcdf("mine.nc")
-    told = invoke("case", "few.toml", "--beta", 1.1, "--amplitude", 1, "-o", "mine", code=2)
-    assert "mine.nc: holds a sweep or other data" in told
-
-
 def test_another_solver_that_cannot_do_what_is_asked_is_told_with_its_file(here):
     (here / "steady.toml").write_text(FEW.replace("settle_periods = 3", 'settle = "steady"'))
     assert 'steady.toml: solver "radau": solver.settle' in run("steady.toml", "--solver", "radau", code=2)
@@ -403,14 +401,6 @@ def test_a_lack_of_memory_is_no_traceback():
 def test_an_error_of_the_system_without_a_number_is_told():
     assert str(_failure(TimeoutError("no answer"))) == "no answer"
     assert str(_failure(TimeoutError())) == "TimeoutError"
-
-
-@pytest.mark.acceptance
-@pytest.mark.usefixtures("empty_pictures")
-def test_plot_all(here, drawn_dataset):
-    invoke("plot", "all", drawn_dataset, "-o", "new/figures", "--beta", 0.4)
-    made = {path.name for path in (here / "new" / "figures").iterdir()}
-    assert made == {f"{kind}.png" for kind in figures.FIGURES}
 
 
 @pytest.mark.usefixtures("empty_pictures")

@@ -8,13 +8,11 @@ import pytest
 
 from tests import latex
 from wedgesweep import equations
-from wedgesweep.cli import compiling
 from wedgesweep.effects import EFFECTS, REGISTERED
 
 ROOT = Path(__file__).parents[1]
 PAGES = sorted([ROOT / "README.md", ROOT / "CHANGELOG.md", *(ROOT / "docs").glob("*.md")])
 PHYSICS = ROOT / "docs" / "physics.md"
-PERFORMANCE = ROOT / "docs" / "performance.md"
 
 
 def anchors(page):
@@ -67,31 +65,3 @@ def test_steady_responses_are_those_of_the_test_data():
         (row["friction_law"], *(row[key] for key in keys), row["minimum_normal_force_N"]) for row in data
     }
     assert {(row[0], *map(float, row[1:])) for row in rows("**Steady responses**")} == expected
-
-
-def test_speeds_are_those_of_the_bench():
-    bench = (ROOT / "docs" / "bench_solvers.txt").read_text()
-    names = ("plain Radau", "this project's Radau", "numbalsoda", "event-driven, to records")
-    expected = []
-    for law in ("coulomb", "static-dynamic", "exponential"):
-        for accuracy in ("1e-03", "1e-05"):
-            table = bench.partition(f"\n{law}, accuracy {accuracy}\n")[2].partition("\n\n")[0]
-            lines = {name: line for line in table.splitlines() for name in names if line.startswith(name)}
-            found = [lines.get(name, "- - -").removesuffix(" never this accurate") for name in names]
-            expected.append([line.split()[-3:] if line in lines.values() else None for line in found])
-    table = rows("## Solvers", PERFORMANCE)
-    for column, (plain, radau, library, ours) in enumerate(expected, 1):
-        speeds = [plain and plain[0], radau and radau[0], library[0] if library else "none", *ours]
-        assert [row[column] for row in table] == [(each or "").removesuffix("-") for each in speeds]
-
-
-def test_compile_times_are_those_of_the_bench():
-    bench = (ROOT / "docs" / "bench_compile.txt").read_text()
-    numbers = [line.split()[-3:] for line in bench.splitlines() if line.startswith(("run", "diagnose"))]
-    assert [row[1:] for row in rows("## Compilation", PERFORMANCE)] == numbers
-    run, _, _, _, diagnose = (float(each[2]) for each in numbers)
-    # What the command line announces, and the README.
-    assert 10.0 <= run <= 15.0
-    assert 20.0 <= diagnose <= 30.0
-    assert compiling.FIRST.endswith("(once: 15 s of CPU time, for a diagnosis half a minute)")
-    assert "compiles, for half a minute" in (ROOT / "README.md").read_text()

@@ -18,7 +18,6 @@ from wedgesweep.figures import (
     friction_laws,
     lines,
     maps,
-    response,
     style,
     validity,
 )
@@ -148,28 +147,6 @@ def test_saves(dataset, tmp_path):
     with pytest.raises(ValueError, match=r"'\.jpeg'.*\.png, \.pdf, \.svg"):
         figures.save(figure, tmp_path / "figure.jpeg")
     assert len(list(tmp_path.iterdir())) == len(figures.FORMATS)
-
-
-def test_failed_write_keeps_the_old_picture(tmp_path):
-    class Broken:
-        def savefig(self, path, **options):
-            path.write_bytes(b"half a picture")
-            raise OSError
-
-    path = tmp_path / "figure.png"
-    path.write_bytes(b"old")
-    with pytest.raises(OSError):  # noqa: PT011 - raised above
-        figures.save(Broken(), path)
-    assert path.read_bytes() == b"old"
-    assert list(tmp_path.iterdir()) == [path]
-
-
-@pytest.mark.parametrize("kind", KINDS)
-def test_file_is_found_under_its_name(kind):
-    declared = figures.FIGURES[kind]
-    module = declared.load()
-    assert (kind, declared.description) == (module.NAME, module.DESCRIPTION)
-    assert declared.needs == module.NEEDS
 
 
 TOY = """
@@ -346,13 +323,6 @@ def test_what_is_far_from_the_grid_is_an_error(dataset):
             figures.draw(dataset, kind, **picks)
 
 
-def test_response_picks_a_beta_that_moves(dataset):
-    place = response._lowest_that_moves(dataset)
-    moving = (dataset["stick_fraction"] < cases.SLIPS).mean(["friction_law", "amplitude"])
-    assert moving[place] >= 0.5
-    assert (moving[:place] < 0.5).all()
-
-
 @pytest.mark.parametrize("kind", ["amplitude-ratio", "peak-to-peak", "stick-map"])
 def test_cases_outside_of_validity_and_unsettled_ones_are_marked(kind, dataset):
     told = legend(figures.draw(dataset, kind))
@@ -398,11 +368,6 @@ def test_every_figure_takes_a_law(kind, dataset):
     told = str([figure.get_suptitle(), *(ax.get_title() for ax in figure.axes)])
     assert kind == "peak-to-peak" or law.lower() in told
     assert "static-dynamic" not in told
-
-
-def test_unknown_law_lists_those_of_the_dataset(dataset):
-    with pytest.raises(ValueError, match=r"'viscous'.*coulomb, static-dynamic, exponential"):
-        figures.draw(dataset, "phase-portrait", law="viscous")
 
 
 def test_failed_cases_are_marked(dataset):

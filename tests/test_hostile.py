@@ -139,13 +139,6 @@ def test_a_null_character_in_a_path(here):
         files.regular(here / "x\0.csv")
 
 
-@pytest.mark.parametrize("fresh", [(), ("--fresh",)])
-def test_a_foreign_file_in_place_of_the_journal_stays(here, fresh):
-    (here / "small.nc.partial").write_text("mine\n")
-    assert "small.nc.partial: not the journal of a sweep" in invoke("run", "small.toml", *fresh, code=2)
-    assert (here / "small.nc.partial").read_text() == "mine\n"
-
-
 def test_what_a_killed_process_left_is_removed_and_nothing_else(here):
     ended = subprocess.Popen(["true"])
     ended.wait()
@@ -189,11 +182,6 @@ def test_umlauts_where_the_locale_has_none(here):
         assert ended.returncode == code, told
         assert b"Traceback" not in told
         assert b"pr" in told
-
-
-def test_a_dataset_in_place_of_a_config_says_so(here):
-    (here / "small.nc").write_bytes(b"\x89HDF\r\n\x1a\n")
-    assert "small.nc: a dataset, where a config (TOML) is wanted" in invoke("run", "small.nc", code=2)
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,7 @@ import pytest
 
 from tests import small_sweep
 from tests.command import invoke
-from wedgesweep.cli import cli, compiling, messages
+from wedgesweep.cli import compiling, messages
 from wedgesweep.cli.progress import ProgressReport
 from wedgesweep.diagnose.work import Step
 
@@ -31,13 +31,6 @@ def clock(monkeypatch):
 
 def lines(capfd):
     return capfd.readouterr().err.splitlines()
-
-
-@pytest.mark.parametrize("name", cli.commands)
-def test_every_command_can_be_quiet_or_verbose(name):
-    told = invoke(name, "--help")
-    assert "--quiet" in told
-    assert "--verbose" in told
 
 
 def test_quiet_leaves_the_result_and_verbose_tells_more(here):

@@ -190,8 +190,3 @@ def test_a_real_run_at_20_hz_has_plateaus_of_an_eighth(tmp_path):
     lengths, inputs, _ = experiment.stops(Run(ds))
     assert lengths[[0, -1]] == pytest.approx([0.1470 / 2, 0.5827 / 2], abs=0.003)
     assert 0.045 < experiment.at_plateau(lengths, inputs) < 0.05
-
-
-def test_a_case_that_a_run_lacks_is_named(runs):
-    with pytest.raises(KeyError, match="no amplitude"):
-        runs.paper.case("coulomb", 0.4, 0.2)

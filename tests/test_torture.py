@@ -5,7 +5,7 @@ from random import Random
 import fuzz
 import kill_campaign
 import pytest
-from torture import formats, inputs, kills, mutations, specimens
+from torture import formats, inputs, kills, specimens
 from torture.verdicts import ACCEPTED, HANG, LIMIT, NOT_FINITE, REFUSED, TRACEBACK, WARNING, judge
 
 from tests import fixture_diagnosis
@@ -88,31 +88,6 @@ def test_faults_are_seen(tmp_path, monkeypatch, fails, outcome):
     monkeypatch.setattr("wedgesweep.cli.configs._grid", broken)
     limit = 0.5 if outcome == HANG else LIMIT
     assert judge(["check", "c.toml"], limit).outcome == outcome
-
-
-@pytest.mark.few(1)
-@pytest.mark.parametrize(
-    "said", ["title: nan", "versions: numba inf", "-inf   20   0.3", 'unit "-inf= -inf"']
-)
-def test_a_name_is_no_number(tmp_path, monkeypatch, said):
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "c.toml").write_text(CONFIG)
-    monkeypatch.setattr("wedgesweep.cli.configs._grid", lambda _: f"\n{said}")
-    assert not judge(["check", "c.toml"]).fault
-
-
-def test_mutations_are_toml_that_is_read_or_refused():
-    import tomllib
-
-    read = 0
-    for number in range(300):
-        text = mutations.toml(mutations.document(specimens.MEASURED, Random(number)))
-        try:
-            tomllib.loads(text)
-        except (tomllib.TOMLDecodeError, RecursionError):
-            continue
-        read += 1
-    assert read > 200
 
 
 @pytest.mark.acceptance

@@ -4,18 +4,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from math import inf, isinf, pi
 
+from wedgesweep import natural_units
 from wedgesweep.formatting import SUPERSCRIPT
-from wedgesweep.natural_units import (
-    ACCELERATION,
-    BENCH,
-    FREQUENCY,
-    LENGTH,
-    SHARE,
-    TIME,
-    VELOCITY,
-    Dimension,
-    NaturalUnits,
-)
 from wedgesweep.rotation import ENDINGS
 
 # How much wider than the searched range the range is in which a number may be followed: times the width, or
@@ -24,19 +14,19 @@ WIDER, SHORT = 10.0, 0.01
 # Endings of keys: what turns the unit into SI, and its dimension; without any of them a number is a share or
 # a factor. The longest are first, so that "_N_per_mm" is not read as "_mm".
 UNITS = {
-    "_N_per_mm3": (1e9, Dimension(mass=1, length=-2, time=-2)),
-    "_N_per_mm": (1e3, Dimension(mass=1, time=-2)),
-    "_N_s2_per_m2": (1.0, Dimension(mass=1, length=-1)),
-    "_N_s_per_m": (1.0, Dimension(mass=1, time=-1)),
-    "_m_per_s2": (1.0, ACCELERATION),
-    "_rad_per_s": (1.0, FREQUENCY),
-    "_mm_per_s": (1e-3, VELOCITY),
-    "_deg": (pi / 180.0, SHARE),
-    "_kg": (1.0, Dimension(mass=1)),
-    "_mm": (1e-3, LENGTH),
-    "_hz": (1.0, FREQUENCY),
-    "_N": (1.0, Dimension(mass=1, length=1, time=-2)),
-    "_s": (1.0, TIME),
+    "_N_per_mm3": (1e9, natural_units.Dimension(mass=1, length=-2, time=-2)),
+    "_N_per_mm": (1e3, natural_units.Dimension(mass=1, time=-2)),
+    "_N_s2_per_m2": (1.0, natural_units.Dimension(mass=1, length=-1)),
+    "_N_s_per_m": (1.0, natural_units.Dimension(mass=1, time=-1)),
+    "_m_per_s2": (1.0, natural_units.ACCELERATION),
+    "_rad_per_s": (1.0, natural_units.FREQUENCY),
+    "_mm_per_s": (1e-3, natural_units.VELOCITY),
+    "_deg": (pi / 180.0, natural_units.SHARE),
+    "_kg": (1.0, natural_units.Dimension(mass=1)),
+    "_mm": (1e-3, natural_units.LENGTH),
+    "_hz": (1.0, natural_units.FREQUENCY),
+    "_N": (1.0, natural_units.Dimension(mass=1, length=1, time=-2)),
+    "_s": (1.0, natural_units.TIME),
 }
 # A rotation has an angle in place of a length, and so on; omega_n stays a frequency.
 UNITS = {other: (1.0, UNITS[ending][1]) for ending, (other, _) in ENDINGS.items()} | UNITS
@@ -105,17 +95,17 @@ class Quantity:
         return SYMBOLS.get(self.suffix, words.translate(SUPERSCRIPT))
 
     @cached_property
-    def dimension(self) -> Dimension:
+    def dimension(self) -> natural_units.Dimension:
         """Powers of mass, length and time."""
-        return UNITS[self.suffix][1] if self.suffix else SHARE
+        return UNITS[self.suffix][1] if self.suffix else natural_units.SHARE
 
-    def searched(self, units: NaturalUnits = BENCH) -> tuple[float, float]:
+    def searched(self, units: natural_units.NaturalUnits = natural_units.BENCH) -> tuple[float, float]:
         """Search range in the key's unit for a model with these natural units; no limits if not fitted."""
         low, high = self.search or (-inf, inf)
         ratio = units.ratio(self.dimension)
         return ratio * low, ratio * high
 
-    def wider(self, units: NaturalUnits = BENCH) -> tuple[float, float]:
+    def wider(self, units: natural_units.NaturalUnits = natural_units.BENCH) -> tuple[float, float]:
         """A range around the searched one, as far as the number may go, in the key's unit."""
         low, high = self.searched(units)
         if self.logarithmic:

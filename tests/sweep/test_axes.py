@@ -312,13 +312,6 @@ def test_the_model_drawn_by_default_moves(tmp_path):
     assert "friction.dynamic = 0.1" in models.of_one(stuck).attrs["model"]
 
 
-def test_datasets_of_the_same_frequencies_join(tmp_path):
-    parts = [fixed(37.5, 0.29, mass=mass).swap_dims(beta="frequency") for mass in (0.5, 0.7)]
-    joined = xr.concat(parts, "bolster_mass", join="exact", coords="different", compat="equals")
-    assert joined["frequency"].values.tolist() == [10.0, 20.0]
-    assert joined["amplitude_ratio"].notnull().all()
-
-
 def test_kinds_of_damping_are_an_axis_of_names(tmp_path):
     model = "[suspension]\nwedge_preload_N = 4.0\n"
     axes = '[sweep.axes]\nsuspension.damping = ["constant", "variable"]\n'

@@ -192,13 +192,6 @@ def test_behind_a_case_that_fails_comes_rest(tmp_path):
     assert np.isnan(ds["amplitude_ratio_down"].values[1:]).all()
 
 
-def test_the_flag_says_what_it_means(steep):
-    flag = steep["coexisting"].attrs
-    meanings = dict(zip(flag["flag_values"].tolist(), flag["flag_meanings"].split(), strict=True))
-    assert meanings == {-1: "not_told", 0: "no", 1: "yes"}
-    assert "1000 steady_tolerance" in flag["long_name"]
-
-
 @pytest.mark.usefixtures("empty_pictures")
 def test_figures_and_the_command_line(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)

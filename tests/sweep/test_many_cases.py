@@ -119,23 +119,6 @@ def test_numbers_of_a_long_list_take_two_calls_each():
     assert calls[100_000] - calls[1000] <= 2 * 99_000
 
 
-@pytest.mark.parametrize(
-    ("betas", "fault"),
-    [
-        ("0.1, 0.2, 0.2", "sweep.beta: 0.2 is repeated; keep one"),
-        ("0.1, 0.3, 0.2", "sweep.beta: 0.2 follows 0.3; write the values in increasing order"),
-        ("0.1, 1e16", "sweep.beta[1]: 1e+16 is out of range"),
-        ("-0.1, 0.2", "sweep.beta[0]: -0.1 is out of range"),
-        ("0.1, nan", "sweep.beta[1]: nan is not a finite number"),
-        ("0.1, true", "sweep.beta[1]: true is not a finite number"),
-        ("0.1, " + "9" * 400, "sweep.beta[1]: 9999"),
-    ],
-)
-def test_a_fault_of_a_list_is_told_with_its_place(betas, fault):
-    with pytest.raises(config.ConfigError, match=re.escape(fault)):
-        config.parse(f'[sweep]\nfriction_law = "coulomb"\nbeta = [{betas}]\namplitude_mm = 1.0\n')
-
-
 @pytest.mark.few(5)
 @pytest.mark.parametrize("shape", [(1,), (63,), (64,), (65,), (2, 30, 30), (3, 160, 210)])
 @pytest.mark.parametrize("method", ["radau", "event-driven"])

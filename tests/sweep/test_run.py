@@ -218,18 +218,6 @@ def test_the_short_run_of_a_motion_succeeds(method):
     assert STATUSES[record["status"]] == "ok", record["message"]
 
 
-def test_list_of_cases(tmp_path):
-    text = CONFIG[CONFIG.index("[solver]") :] + "".join(
-        f'[[sweep.case]]\nfriction_law = "{law}"\nbeta = {beta}\namplitude_mm = {a}\n'
-        for law, beta, a in (("exponential", 1.1, 0.6), ("coulomb", 0.8, 1.2))
-    )
-    ds = small_sweep.sweep(tmp_path, text).run(n_jobs=1)
-    assert ds["amplitude_ratio"].dims == ("case",)
-    assert ds["friction_law"].values.tolist() == ["exponential", "coulomb"]
-    assert ds["beta"].values.tolist() == [1.1, 0.8]
-    assert config.parse(ds.attrs["config"]).case_list()[1].amplitude == ds["amplitude"][1]
-
-
 LONG = small_sweep.CONFIG.replace("settle_periods = 3", "settle_periods = 40")
 
 

@@ -1,10 +1,8 @@
 """export: a dataset as CSV, a row for each case."""
 
-import csv
-import io
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -25,8 +23,7 @@ STATED = {"frequency": "Hz", "amplitude": "m"}
 COORDINATES = ("friction_law", "beta", "frequency", "amplitude", "scale")
 # Dimensions of waveforms.
 SAMPLED = ("phase", "time")
-# Number of cases that are turned into text at a time.
-AT_A_TIME = 10_000
+AS_CSV: dict[str, Any] = {"index": False, "lineterminator": "\n", "encoding": "utf-8"}
 
 
 @click.command()
@@ -54,15 +51,13 @@ def export(path: Path, output: Path | None, variables: str | None, units: str) -
     chosen = None if variables is None else [name.strip() for name in variables.split(",") if name.strip()]
     if not {*(chosen or ())} <= set(ds.variables):
         ds = _with_quantities(ds, chosen or ())
-    rows = _rows(in_system(ds, units), _variables_of(ds, chosen))
+    write_to = _table(in_system(ds, units), _variables_of(ds, chosen)).to_csv
     file = output or Path(f"{path.stem}.csv")
     if file == STANDARD_OUTPUT:
-        for some in rows:
-            click.echo(_text(some), nl=False)
+        click.echo(write_to(**AS_CSV), nl=False)
         return
-    with written(file) as temporary, temporary.open("w", encoding="utf-8", newline="") as stream:
-        for some in rows:
-            stream.write(_text(some))
+    with written(file) as temporary:
+        write_to(temporary, **AS_CSV)
     click.echo(f"wrote {file}: {counted(ds['status'].size, 'case')}")
 
 
@@ -73,12 +68,6 @@ def _with_quantities(ds: "xr.Dataset", names: Sequence[str]) -> "xr.Dataset":
         return engineering_quantities.with_quantities(ds, names)
     except ValueError as error:
         raise Failure(str(error)) from error
-
-
-def _text(rows: list[list[str]]) -> str:
-    made = io.StringIO()
-    csv.writer(made, lineterminator="\n").writerows(rows)
-    return made.getvalue()
 
 
 def _variables_of(ds: "xr.Dataset", chosen: Sequence[str] | None) -> list[str]:
@@ -100,22 +89,20 @@ def _variables_of(ds: "xr.Dataset", chosen: Sequence[str] | None) -> list[str]:
     return [name for name in dict.fromkeys(chosen) if name not in ds.coords]
 
 
-def _rows(ds: "xr.Dataset", variables: Sequence[str]) -> Iterator[list[list[str]]]:
-    """The header, then rows of cells, some at a time; numbers in full precision.
+def _table(ds: "xr.Dataset", variables: Sequence[str]) -> Any:
+    """The table (pandas), a row for each case; numbers that are not there are empty.
 
     The first columns are the case: law, and beta, frequency and amplitude, or the scale of an input, and
     numbers of the model that the sweep varies. A column's name ends with its unit in brackets; the parts of a
     variable that has several a case are columns of their own.
     """
+    import xarray as xr
+
     from wedgesweep.figures.models import varied
 
     names = [*(name for name in COORDINATES if name in ds.coords), *varied(ds)]
     columns = [column for name in (*names, *variables) for column in _columns(ds, name)]
-    yield [[header for header, _ in columns]]
-    count = ds["status"].size
-    for first in range(0, count, AT_A_TIME):
-        part = slice(first, first + AT_A_TIME)
-        yield [list(row) for row in zip(*(_texts(values[part]) for _, values in columns), strict=True)]
+    return xr.Dataset({header: ("row", values) for header, values in columns}).to_dataframe()
 
 
 def _columns(ds: "xr.Dataset", name: str) -> "Iterator[tuple[str, np.ndarray]]":
@@ -143,10 +130,3 @@ def _meanings_of(given: "xr.DataArray") -> "xr.DataArray":
 
     words = dict(zip(given.attrs["flag_values"].tolist(), given.attrs["flag_meanings"].split(), strict=True))
     return given.copy(data=np.vectorize(words.get, otypes=[object])(given.values))
-
-
-def _texts(values: "np.ndarray") -> list[str]:
-    """Values as text; numbers that are not there are empty."""
-    if values.dtype.kind == "f":
-        return ["" if value != value else repr(value) for value in values.tolist()]
-    return [str(value) for value in values.tolist()]

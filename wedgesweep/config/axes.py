@@ -239,8 +239,8 @@ class Groups(Key):
 
 
 TOGETHER = Groups(
-    key=ZIP,
-    meaning="axes that go together: their first values, their second ones, ...",
+    ZIP,
+    "axes that go together: their first values, their second ones, ...",
     optional=True,
     example=["suspension.bolster_mass_kg", "suspension.wedge_mass_kg"],
 )
@@ -265,11 +265,7 @@ class Axes(WithNumbers):
         series = _series(number)
         # What goes together with another axis need not increase.
         follows = any(path.endswith(f'"{key}"') for group in read.get(ZIP, ()) for key in group[1:])
-        kind = (
-            Numbers(key=number.key, meaning="", item=number)
-            if follows and isinstance(value, list)
-            else series
-        )
+        kind = Numbers(number.key, "", item=number) if follows and isinstance(value, list) else series
         return kind.read(value, path, problems)
 
     def number_shape(self, number: Varied) -> dict[str, Any]:
@@ -279,8 +275,8 @@ class Axes(WithNumbers):
 def _series(item: Varied) -> Several:
     """The values of an axis; names and whole numbers are listed."""
     if isinstance(item, Choice | Whole):
-        return Several(key=item.key, meaning="", item=item)
-    return Series(key=item.key, meaning="", item=item)
+        return Several(item.key, "", item=item)
+    return Series(item.key, "", item=item)
 
 
 def corners(values: Mapping[str, Any]) -> Iterator[dict[str, Any]]:

@@ -2,7 +2,6 @@
 
 from collections.abc import Collection, Mapping
 from math import nan, sqrt
-from typing import Any
 
 from wedgesweep.config import force_table
 from wedgesweep.config.axes import NO_NUMBER, TOGETHER, Axes, Varied, WithNumbers, numbers_of
@@ -20,26 +19,8 @@ from wedgesweep.friction.quantities import FRICTION
 from wedgesweep.quantity import Quantity
 from wedgesweep.rotation import MOTIONS, ROTATION
 from wedgesweep.solvers.names import SOLVERS
-from wedgesweep.systems.oscillator.parameters import (
-    BASE,
-    BELT_VELOCITY,
-    BRISTLES,
-    CONTACTS,
-    COUPLING,
-    EXCITATIONS,
-    LINEAR,
-    OSCILLATOR,
-    RESTORING,
-)
-from wedgesweep.systems.suspension.parameters import (
-    CONSTANT,
-    DAMPING,
-    JOINTS,
-    LOCKED_IN,
-    RESTITUTION,
-    SUSPENSION,
-    UNILATERAL,
-)
+from wedgesweep.systems.oscillator import parameters as oscillator
+from wedgesweep.systems.suspension import parameters as suspension
 
 BETA = Quantity("beta", nan, "input frequency over omega_n", above=0.0)
 FREQUENCY = Quantity("frequency_hz", nan, "input frequency", above=0.0)
@@ -47,24 +28,21 @@ AMPLITUDE = Quantity("amplitude_mm", nan, "input amplitude a of the side frame",
 FORCE_AMPLITUDE = Quantity(
     "amplitude_N", nan, 'amplitude of the force on the mass, for excitation = "force"', minimum=0.0
 )
-OMEGA_N = Quantity(
-    "omega_n_rad_per_s", nan, "omega_n that beta refers to; default: sqrt(k_b/M_b), or sqrt(k/m)", above=0.0
-)
 # The laws are looked up when a config is read: one may be registered until then.
-LAW = Choice(key="friction_law", meaning="friction law", choices=LAWS.keys(), example=LAW_NAMES[0])
+LAW = Choice("friction_law", "friction law", choices=LAWS.keys(), example=LAW_NAMES[0])
 
 
 def _series(quantity: Quantity, example: object) -> Series:
     return Series(
-        key=quantity.key,
-        meaning=f"{quantity.meaning}: a number, an increasing list or a range",
+        quantity.key,
+        f"{quantity.meaning}: a number, an increasing list or a range",
         item=Number.of(quantity),
         example=example,
     )
 
 
 def _optional(key: str, meaning: str, choices: Collection[str], example: str) -> Choice:
-    return Choice(key=key, meaning=meaning, choices=choices, optional=True, example=example)
+    return Choice(key, meaning, choices=choices, optional=True, example=example)
 
 
 def _off(quantity: Quantity, meaning: str) -> Number:
@@ -75,14 +53,9 @@ def _off(quantity: Quantity, meaning: str) -> Number:
 EXCITATION = _optional(
     "excitation",
     'motion of the base, or (oscillator only) a force on the mass; default: "base"',
-    EXCITATIONS,
-    BASE,
+    oscillator.EXCITATIONS,
+    oscillator.BASE,
 )
-
-
-def _whole(key: str, default: int | None, meaning: str, minimum: int, maximum: int, **more: Any) -> Whole:
-    quantity = Quantity(key, nan if default is None else default, meaning, minimum, maximum=maximum)
-    return Whole.of(quantity, **more)
 
 
 def _effect(effect: Effect) -> Table:
@@ -100,9 +73,15 @@ def _typical(quantity: Quantity) -> float | None:
     return float(f"{sqrt(low * high) if quantity.logarithmic else 0.5 * (low + high):.0e}")
 
 
-OMEGA_N_KEY = Number.of(OMEGA_N, optional=True, example=85.3565)
+OMEGA_N = Number.new(
+    "omega_n_rad_per_s",
+    "omega_n that beta refers to; default: sqrt(k_b/M_b), or sqrt(k/m)",
+    above=0.0,
+    optional=True,
+    example=85.3565,
+)
 
-LAWS_KEY = Several(key="friction_law", meaning="friction laws", item=LAW, example=list(LAW_NAMES))
+LAWS_KEY = Several("friction_law", "friction laws", item=LAW, example=list(LAW_NAMES))
 
 INPUT_KEYS = (
     (
@@ -129,7 +108,7 @@ def _grid(numbers: Mapping[str, Varied], transient: bool) -> Table:
         f"the cases {where}" if transient else f"the cases: {where}",
         LAWS_KEY,
         *((SCALE,) if transient else INPUT_KEYS),
-        OMEGA_N_KEY,
+        OMEGA_N,
         (
             table(
                 "axes",
@@ -161,11 +140,11 @@ def _listed(numbers: Mapping[str, Varied]) -> Table:
     return table(
         "sweep",
         "a list of cases",
-        OMEGA_N_KEY,
+        OMEGA_N,
         EXCITATION,
         TableList(
-            key="case",
-            meaning="one case each",
+            "case",
+            "one case each",
             item=table(
                 "case",
                 "one case",
@@ -183,53 +162,60 @@ def _listed(numbers: Mapping[str, Varied]) -> Table:
 SOLVER = table(
     "solver",
     "how each case is solved",
-    Choice(key="method", meaning="integrator", choices=SOLVERS, default=SOLVERS[0]),
-    Number.of(Quantity("rtol", 1e-6, "relative tolerance", minimum=1e-13, maximum=1e-2)),
+    Choice("method", "integrator", choices=SOLVERS, default=SOLVERS[0]),
+    Number.new("rtol", "relative tolerance", 1e-6, minimum=1e-13, maximum=1e-2),
     (
-        Number.of(
-            Quantity(
-                "duration_s",
-                1.5,
-                "simulated time, in whole periods and at least kept_periods + 1 of them",
-                above=0.0,
-            )
+        Number.new(
+            "duration_s",
+            "simulated time, in whole periods and at least kept_periods + 1 of them",
+            1.5,
+            above=0.0,
         ),
-        _whole(
-            "settle_periods", None, "periods simulated before those that are kept", 1, 100_000, example=60
+        Whole.new(
+            "settle_periods",
+            "periods simulated before those that are kept",
+            minimum=1,
+            maximum=100_000,
+            example=60,
         ),
         _optional("settle", "run until the response repeats (event-driven only)", ("steady",), "steady"),
     ),
-    Number.of(
-        Quantity(
-            "steady_tolerance",
-            1e-7,
-            "largest change per repetition of a steady response, over input amplitude and velocity",
-            minimum=1e-13,
-            maximum=1e-2,
-        )
+    Number.new(
+        "steady_tolerance",
+        "largest change per repetition of a steady response, over input amplitude and velocity",
+        1e-7,
+        minimum=1e-13,
+        maximum=1e-2,
     ),
     Flag(
-        key="continuation",
-        meaning="sweep up and down in beta, from one steady state to the next, to find coexisting responses",
+        "continuation",
+        "sweep up and down in beta, from one steady state to the next, to find coexisting responses",
         default=False,
     ),
-    _whole(
+    Whole.new(
         "max_periods",
-        5000,
         "periods after which a response that has not repeated counts as not periodic",
-        10,
-        10**7,
+        5000,
+        minimum=10,
+        maximum=10**7,
     ),
-    _whole("kept_periods", 3, "periods at the end of a run that are evaluated and stored", 2, 1000),
-    _whole("samples_per_period", 256, "samples per period of the stored waveforms", 32, 65_536, step=2),
-    Flag(key="keep_waveforms", meaning="store waveforms, not only numbers", default=True),
-    Number.of(
-        Quantity(
-            "case_timeout_s",
-            60.0,
-            "wall-clock limit of a case (radau; event-driven limits its steps and events instead)",
-            above=0.0,
-        )
+    Whole.new(
+        "kept_periods",
+        "periods at the end of a run that are evaluated and stored",
+        3,
+        minimum=2,
+        maximum=1000,
+    ),
+    Whole.of(
+        Quantity("samples_per_period", 256, "samples per period of the stored waveforms", 32, maximum=65_536),
+        step=2,
+    ),
+    Flag("keep_waveforms", "store waveforms, not only numbers", default=True),
+    Number.new(
+        "case_timeout_s",
+        "wall-clock limit of a case (radau; event-driven limits its steps and events instead)",
+        60.0,
+        above=0.0,
     ),
     default={},
 )
@@ -240,15 +226,15 @@ OSCILLATOR_TABLE = table(
     "instead of a suspension: a mass that rubs on a surface, m x'' + c (x' - u') + k (x - u) + mu(v) N = F",
     *(
         Number.of(quantity, example=example)
-        for quantity, example in zip(OSCILLATOR, (3.0, 1.2, 0.0, 2.5), strict=True)
+        for quantity, example in zip(oscillator.OSCILLATOR, (3.0, 1.2, 0.0, 2.5), strict=True)
     ),
     Choice(
-        key="contact",
-        meaning="what the rubbing surface moves with: base (v = x' - u'), ground (v = x') or belt",
-        choices=CONTACTS,
-        default=BASE,
+        "contact",
+        "what the rubbing surface moves with: base (v = x' - u'), ground (v = x') or belt",
+        choices=oscillator.CONTACTS,
+        default=oscillator.BASE,
     ),
-    Number.of(BELT_VELOCITY, optional=True, example=200.0),
+    Number.of(oscillator.BELT_VELOCITY, optional=True, example=200.0),
     _optional(
         "motion",
         "rotation: angles for lengths, torques for forces, and keys in rad, N m and kg m^2",
@@ -258,13 +244,13 @@ OSCILLATOR_TABLE = table(
     _optional(
         "restoring_force",
         "of the spring; pendulum: of a rotation, k sin(x), where the spring is m g l",
-        RESTORING,
-        LINEAR,
+        oscillator.RESTORING,
+        oscillator.LINEAR,
     ),
-    Number.of(COUPLING, optional=True, example=0.5),
+    Number.of(oscillator.COUPLING, optional=True, example=0.5),
     *(
         Number.of(quantity, optional=True, example=example)
-        for quantity, example in zip(BRISTLES, (100.0, 300.0, 0.4), strict=True)
+        for quantity, example in zip(oscillator.BRISTLES, (100.0, 300.0, 0.4), strict=True)
     ),
 )
 
@@ -275,8 +261,8 @@ def root(transient: bool = False) -> Table:
     varying = numbers_of(model)
     scaled = _grid(varying, transient=True)
     grid, listed = _grid(varying, transient=False), _listed(varying)
-    cases = GridOrList(key="sweep", meaning="the cases", grid=grid, listed=listed, scaled=scaled)
-    title = Text(key="title", meaning="title of the sweep", default="wedge suspension")
+    cases = GridOrList("sweep", "the cases", grid=grid, listed=listed, scaled=scaled)
+    title = Text("title", "title of the sweep", default="wedge suspension")
     return table("", "Config of wedgesweep", title, *model.groups, scaled if transient else cases, SOLVER)
 
 
@@ -294,24 +280,27 @@ def _model() -> Table:
             table(
                 "suspension",
                 "the suspension; defaults: Table 1 of the paper",
-                *map(Number.of, SUSPENSION),
+                *map(Number.of, suspension.SUSPENSION),
                 _optional(
                     "damping",
                     "whether the springs of the wedges stand on the side frame, or on the bolster",
-                    DAMPING,
-                    CONSTANT,
+                    suspension.DAMPING,
+                    suspension.CONSTANT,
                 ),
                 _optional(
                     "joints",
                     "whether both faces of a wedge are held, or may lift off, fall back and hit",
-                    JOINTS,
-                    UNILATERAL,
+                    suspension.JOINTS,
+                    suspension.UNILATERAL,
                 ),
                 _off(
-                    RESTITUTION,
+                    suspension.RESTITUTION,
                     'coefficient of restitution of impacts, for joints = "unilateral" (0 if absent)',
                 ),
-                _off(LOCKED_IN, "share of the band of rest that set-valued friction holds (0 if absent)"),
+                _off(
+                    suspension.LOCKED_IN,
+                    "share of the band of rest that set-valued friction holds (0 if absent)",
+                ),
                 default={},
             ),
             OSCILLATOR_TABLE,

@@ -16,27 +16,22 @@ from wedgesweep.config.series import Numbers
 from wedgesweep.config.tables import table
 from wedgesweep.effects import empirical_force
 from wedgesweep.effects.empirical_force import EFFECT, PLACES, SPEEDS, TABLE
-from wedgesweep.quantity import Quantity
 from wedgesweep.readers import ReadError, text
 
 PLACE, SPEED, CENTRE = EFFECT.quantities
-FORCE = Quantity("force_N", 0.0, "force at a node")
+FORCE = Number.new("force_N", "force at a node", 0.0)
 FILE, HEADER = "table", (PLACE.key, SPEED.key, FORCE.key)
 KEYS = table(
     EFFECT.name,
     EFFECT.described(),
     (
-        Text(key=FILE, meaning=f"CSV file with columns {', '.join(HEADER)}", example="empirical-force.csv"),
+        Text(FILE, f"CSV file with columns {', '.join(HEADER)}", example="empirical-force.csv"),
         Number.of(PLACE, example=1.0),
     ),
     Number.of(SPEED, optional=True, example=50.0),
     Number.of(CENTRE),
     Numbers(
-        key=TABLE,
-        meaning=f"forces at {PLACES} x {SPEEDS} nodes, up positive",
-        item=Number.of(FORCE),
-        optional=True,
-        example=[0.0],
+        TABLE, f"forces at {PLACES} x {SPEEDS} nodes, up positive", item=FORCE, optional=True, example=[0.0]
     ),
     optional=True,
 )

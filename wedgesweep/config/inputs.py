@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from math import nan
 from typing import Any
 
 from wedgesweep.config.keys import Choice, Flag, Key, Number, Text, Unit, Whole
@@ -10,17 +9,12 @@ from wedgesweep.config.series import Numbers, Series
 from wedgesweep.config.tables import Table, table
 from wedgesweep.hints import hint, show
 from wedgesweep.inputs.units import RECORDED, UNITS
-from wedgesweep.quantity import Quantity
 
 KIND = "kind"
 
 
 def _positive(key: str, meaning: str, **more: Any) -> Number:
-    return Number.of(Quantity(key, nan, meaning, above=0.0), **more)
-
-
-def _any(key: str, meaning: str, default: float = nan, **more: Any) -> Number:
-    return Number.of(Quantity(key, default, meaning), **more)
+    return Number.new(key, meaning, above=0.0, **more)
 
 
 def _size(key: str, meaning: str, example: float) -> tuple[Key, ...]:
@@ -38,13 +32,11 @@ SAMPLING = _positive(
     optional=True,
     example=500.0,
 )
-FADE = Number.of(
-    Quantity("fade_s", 0.0, "time in which it rises at its start and falls at its end", minimum=0.0)
-)
+FADE = Number.new("fade_s", "time in which it rises at its start and falls at its end", 0.0, minimum=0.0)
 
 
 def _kind(name: str, meaning: str, *keys: Key | tuple[Key, ...]) -> Table:
-    kind = Choice(key=KIND, meaning=meaning, choices=(name,), example=name)
+    kind = Choice(KIND, meaning, choices=(name,), example=name)
     return table("input", meaning, kind, *keys, optional=True)
 
 
@@ -55,8 +47,8 @@ SINE_SWEEP = _kind(
     _positive("start_hz", "frequency at the start", example=2.0),
     _positive("stop_hz", "frequency at the end", example=30.0),
     Choice(
-        key="rate",
-        meaning="how the frequency moves: equal ratios, or equal steps, in equal times",
+        "rate",
+        "how the frequency moves: equal ratios, or equal steps, in equal times",
         choices=("logarithmic", "linear"),
         default="logarithmic",
     ),
@@ -71,25 +63,21 @@ RANDOM = _kind(
     _positive("start_hz", "lowest frequency of a band of constant density", optional=True, example=2.0),
     _positive("stop_hz", "highest frequency of the band", optional=True, example=30.0),
     Series(
-        key="frequency_hz",
-        meaning="instead of a band: frequencies at which the density is given",
+        "frequency_hz",
+        "instead of a band: frequencies at which the density is given",
         item=_positive("frequency_hz", "frequency"),
         optional=True,
         example=[1.0, 10.0, 30.0],
     ),
     Numbers(
-        key="level",
-        meaning="the density at each of them, in any unit",
+        "level",
+        "the density at each of them, in any unit",
         item=_positive("level", "level"),
         optional=True,
         example=[1.0, 1.0, 0.1],
     ),
-    Whole.of(Quantity("seed", 0, "seed of the random numbers", minimum=0, maximum=2**31 - 1)),
-    Flag(
-        key="periodic",
-        meaning="whether it is one period of a periodic signal, whose spectrum is exact",
-        default=True,
-    ),
+    Whole.new("seed", "seed of the random numbers", 0, minimum=0, maximum=2**31 - 1),
+    Flag("periodic", "whether it is one period of a periodic signal, whose spectrum is exact", default=True),
     DURATION,
     FADE,
     SAMPLING,
@@ -97,15 +85,15 @@ RANDOM = _kind(
 RELEASE = _kind(
     "release",
     "no input: the mass is released and rings down",
-    _any("displacement_mm", "displacement at the start, as the dataset counts it", 0.0),
-    _any("velocity_mm_per_s", "velocity at the start", 0.0),
+    Number.new("displacement_mm", "displacement at the start, as the dataset counts it", 0.0),
+    Number.new("velocity_mm_per_s", "velocity at the start", 0.0),
     DURATION,
     SAMPLING,
 )
 RAMP = _kind(
     "ramp",
     "a base that moves at a constant velocity",
-    _any("velocity_mm_per_s", "velocity of the base", example=10.0),
+    Number.new("velocity_mm_per_s", "velocity of the base", example=10.0),
     DURATION,
     SAMPLING,
 )
@@ -114,21 +102,21 @@ RAMP = _kind(
 RECORD = _kind(
     "record",
     "a recorded input",
-    Text(key="file", meaning="CSV file, relative to this config", example="bump.csv"),
-    Text(key="sha256", meaning="digest of the file; filled in when the config is read", optional=True),
-    Text(key="column", meaning="header of the input's column", example="base"),
-    Choice(key="quantity", meaning="what it is", choices=tuple(RECORDED), default="displacement"),
+    Text("file", "CSV file, relative to this config", example="bump.csv"),
+    Text("sha256", "digest of the file; filled in when the config is read", optional=True),
+    Text("column", "header of the input's column", example="base"),
+    Choice("quantity", "what it is", choices=tuple(RECORDED), default="displacement"),
     Unit(
-        key="unit",
-        meaning="its unit",
+        "unit",
+        "its unit",
         choices=tuple(dict.fromkeys(unit for units in RECORDED.values() for unit in units)),
         example="mm",
     ),
     (
-        Text(key="time", meaning="header of the time's column (s)", example="time"),
+        Text("time", "header of the time's column (s)", example="time"),
         _positive("sampling_hz", "sampling rate, where there is no such column", example=500.0),
     ),
-    Flag(key="detrend", meaning="whether to subtract its mean", default=False),
+    Flag("detrend", "whether to subtract its mean", default=False),
 )
 KINDS = {
     "sine-sweep": SINE_SWEEP,
@@ -160,14 +148,14 @@ class ByKind(Key):
 
 
 INPUT = ByKind(
-    key="input",
-    meaning="an input that does not repeat, instead of frequencies and amplitudes in [sweep]",
+    "input",
+    "an input that does not repeat, instead of frequencies and amplitudes in [sweep]",
     kinds=KINDS,
     optional=True,
 )
 SCALE = Series(
-    key="scale",
-    meaning="factor of the input, or of the displacement and velocity of a release",
+    "scale",
+    "factor of the input, or of the displacement and velocity of a release",
     item=_positive("scale", "scale"),
     default=[1.0],
 )

@@ -7,8 +7,8 @@ the TOML path, the fault and a valid alternative to ``problems``, and returns No
 
 from abc import ABC, abstractmethod
 from collections.abc import Collection
-from dataclasses import dataclass
-from math import inf, isfinite
+from dataclasses import KW_ONLY, dataclass
+from math import inf, isfinite, nan
 from typing import Any, Self
 
 from wedgesweep import toml
@@ -20,7 +20,7 @@ from wedgesweep.units import usual
 LARGEST, SMALLEST = 1e15, 1e-15
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class Key(ABC):
     """A key of the config.
 
@@ -30,6 +30,7 @@ class Key(ABC):
 
     key: str
     meaning: str
+    _: KW_ONLY
     default: Any = None
     optional: bool = False
     example: Any = None
@@ -143,6 +144,20 @@ class Number(Key):
         default = quantity.default if isfinite(quantity.default) else None
         own = {"key": quantity.key, "meaning": quantity.meaning, "default": default}
         return cls(quantity=quantity, **(own | more))
+
+    @classmethod
+    def new(
+        cls,
+        key: str,
+        meaning: str,
+        default: float = nan,
+        *,
+        optional: bool = False,
+        example: float | None = None,
+        **limits: Any,
+    ) -> Self:
+        """Key of a quantity that nothing else needs, with its ``limits``."""
+        return cls.of(Quantity(key, default, meaning, **limits), optional=optional, example=example)
 
     @property
     def limits(self) -> str:

@@ -15,7 +15,6 @@ from wedgesweep.config.axes import TOLERANCE, Varied, WithNumbers, is_model_key
 from wedgesweep.config.keys import Choice, Flag, Number, Whole
 from wedgesweep.config.tables import Table, table
 from wedgesweep.hints import show
-from wedgesweep.quantity import Quantity
 
 SOBOL, LATIN = KINDS = ("sobol", "latin-hypercube")
 DISTRIBUTION = "distribution"
@@ -24,12 +23,9 @@ LEAST = 2.0**-64
 
 
 def _distribution(name: str, meaning: str, **numbers: str) -> Table:
-    kind = Choice(key=DISTRIBUTION, meaning=meaning, choices=(name,), example=name)
+    kind = Choice(DISTRIBUTION, meaning, choices=(name,), example=name)
     positive = ("std", "sigma", "median")
-    keys = (
-        Number.of(Quantity(key, nan, about, above=0.0 if key in positive else -inf))
-        for key, about in numbers.items()
-    )
+    keys = (Number.new(key, about, above=0.0 if key in positive else -inf) for key, about in numbers.items())
     return table("", meaning, kind, *keys)
 
 
@@ -41,13 +37,10 @@ DISTRIBUTIONS = {
     ),
 }
 KEYS = (
-    Choice(key="kind", meaning="how points are drawn", choices=KINDS, default=SOBOL),
-    Whole.of(
-        Quantity("num", nan, "number of points, of sobol a power of 2", minimum=2, maximum=2**24),
-        example=1024,
-    ),
-    Whole.of(Quantity("seed", 0, "seed of the random numbers", minimum=0, maximum=2**31 - 1)),
-    Flag(key="indices", meaning="num x (2 + numbers) points, for plot sensitivity", default=False),
+    Choice("kind", "how points are drawn", choices=KINDS, default=SOBOL),
+    Whole.new("num", "number of points, of sobol a power of 2", minimum=2, maximum=2**24, example=1024),
+    Whole.new("seed", "seed of the random numbers", 0, minimum=0, maximum=2**31 - 1),
+    Flag("indices", "num x (2 + numbers) points, for plot sensitivity", default=False),
 )
 
 

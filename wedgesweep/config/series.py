@@ -10,7 +10,6 @@ import numpy as np
 from wedgesweep.config.keys import Choice, Key, Number, Whole
 from wedgesweep.config.tables import Table, table
 from wedgesweep.hints import show
-from wedgesweep.quantity import Quantity
 
 
 def spaced(start: float, stop: float, num: int, spacing: str) -> list[float]:
@@ -60,18 +59,8 @@ class Series(Several):
             Number(key=key, meaning=meaning, quantity=replace(self.item.quantity, key=key), example=example)
             for key, meaning, example in (("start", "first value", 0.1), ("stop", "last value", 3.0))
         )
-        num = Whole(
-            key="num",
-            meaning="number of values",
-            quantity=Quantity("num", 1, "number of values", minimum=1, maximum=10_000),
-            example=30,
-        )
-        spacing = Choice(
-            key="spacing",
-            meaning="equal steps or ratios",
-            default="linear",
-            choices=("linear", "log"),
-        )
+        num = Whole.new("num", "number of values", minimum=1, maximum=10_000, example=30)
+        spacing = Choice("spacing", "equal steps or ratios", default="linear", choices=("linear", "log"))
         return table(self.key, self.meaning, start, stop, num, spacing)
 
     def read(self, value: Any, path: str, problems: list[str]) -> list[float] | None:

@@ -55,13 +55,9 @@ LOWPASS = Quantity(
 )
 FROM = Quantity("from_s", nan, "time in the file from which the record is used; by default all of it")
 TO = Quantity("to_s", nan, "time in the file up to which the record is used; by default all of it")
-DETREND = Flag(
-    key="detrend", meaning="whether to remove the straight line of a sensor that drifts", default=False
-)
+DETREND = Flag("detrend", "whether to remove the straight line of a sensor that drifts", default=False)
 UNDRIVEN = Flag(
-    key="undriven",
-    meaning="transient: whether no input acts in this test, so that its file has none",
-    default=False,
+    "undriven", "transient: whether no input acts in this test, so that its file has none", default=False
 )
 MODEL_ERROR = Quantity(
     "model_error",
@@ -195,21 +191,19 @@ DELAY_STD = Quantity("delay_std_ms", nan, "std of that time, which is then fitte
 RATE = Quantity("rate_hz", nan, "sampling rate, where no column holds the time", above=0.0)
 # Keys that every channel has beside its column and its unit.
 COMMON = (
-    Text(key="file", meaning="file of this channel; by default that of the test", optional=True),
+    Text("file", "file of this channel; by default that of the test", optional=True),
     *(Number.of(each, optional=True) for each in (SCALE, SIGN, DELAY, DELAY_STD, RATE)),
     Texts(key="missing", meaning="texts of missing samples, beside NA, NaN, #N/A", optional=True),
 )
-INTERVAL = Flag(
-    key="interval", meaning="whether the column holds the time since the row before", default=False
-)
+INTERVAL = Flag("interval", "whether the column holds the time since the row before", default=False)
 
 
 def _channel(name: str, meaning: str, column: str, unit: str, *more: Key, optional: bool = False) -> Table:
     return table(
         name,
         meaning,
-        Column(key="column", meaning="name of the column, or its number", example=column),
-        Unit(key="unit", meaning="its unit", choices=tuple(units(name)), example=unit),
+        Column("column", "name of the column, or its number", example=column),
+        Unit("unit", "its unit", choices=tuple(units(name)), example=unit),
         *more,
         *((INTERVAL, COMMON[-1]) if name == "time" else COMMON),
         kind=Input if name == INPUT else Inline,
@@ -235,14 +229,12 @@ def _uncertain(name: str) -> Number:
 
 
 OF = Choice(
-    key="of",
-    meaning="motion of the mass against its base, or against the ground",
+    "of",
+    "motion of the mass against its base, or against the ground",
     choices=(RELATIVE, ABSOLUTE),
     default=RELATIVE,
 )
-QUANTITY = Choice(
-    key="quantity", meaning="what was recorded of the input", choices=QUANTITIES, example="displacement"
-)
+QUANTITY = Choice("quantity", "what was recorded of the input", choices=QUANTITIES, example="displacement")
 INPUT_GAIN_STD = Quantity(
     "input_gain_std", 0.0, "relative std of the gain of the recorded input", minimum=0.0, below=1.0
 )
@@ -257,7 +249,7 @@ INPUT_STDS = (INPUT_GAIN_STD.key, INPUT_HARMONICS_STD.key)
 ZERO_STD = Quantity(
     "zero_std", nan, "std of the zero of the load cell from test to test, in this unit", minimum=0.0
 )
-DERIVED = Flag(key="derived", meaning="whether it is computed from the displacement", default=False)
+DERIVED = Flag("derived", "whether it is computed from the displacement", default=False)
 
 COLUMNS = table(
     "columns",
@@ -285,11 +277,11 @@ COLUMNS = table(
 DIALECT = table(
     "csv",
     "how the CSV files are written; what is left out is detected",
-    Choice(key="delimiter", meaning="separator of the columns", choices=tuple(DELIMITERS), optional=True),
-    Choice(key="decimal", meaning="decimal sign", choices=tuple(DECIMALS), optional=True),
-    Choice(key="thousands", meaning="sign between thousands", choices=tuple(THOUSANDS), optional=True),
+    Choice("delimiter", "separator of the columns", choices=tuple(DELIMITERS), optional=True),
+    Choice("decimal", "decimal sign", choices=tuple(DECIMALS), optional=True),
+    Choice("thousands", "sign between thousands", choices=tuple(THOUSANDS), optional=True),
     Whole.of(Quantity("skip_rows", 0, "lines above the header", minimum=0)),
-    Text(key="encoding", meaning="encoding of the text", optional=True, example="latin-1"),
+    Text("encoding", "encoding of the text", optional=True, example="latin-1"),
     default={},
 )
 
@@ -300,10 +292,10 @@ UNCERTAIN = table(
 TEST = table(
     "test",
     "one record",
-    Text(key="file", meaning="file, relative to this one", example="20hz.csv"),
+    Text("file", "file, relative to this one", example="20hz.csv"),
     Choice(
-        key="kind",
-        meaning="steady: periodic response; transient: decay, sweep; loop: force under a motion",
+        "kind",
+        "steady: periodic response; transient: decay, sweep; loop: force under a motion",
         choices=KINDS,
         default=STEADY,
     ),
@@ -311,11 +303,7 @@ TEST = table(
     Number.of(AMPLITUDE_STD),
     *(Number.of(each, optional=True) for each in (FROM, TO)),
     DETREND,
-    Text(
-        key="repeat_of",
-        meaning="file of the test that this one repeats: what differs is noise",
-        optional=True,
-    ),
+    Text("repeat_of", "file of the test that this one repeats: what differs is noise", optional=True),
     UNDRIVEN,
     table(
         "columns",
@@ -323,15 +311,15 @@ TEST = table(
         *map(_override, COLUMNS.keys.values()),
         optional=True,
     ),
-    Overrides(key="model", meaning="numbers of the model in this test", optional=True),
+    Overrides("model", "numbers of the model in this test", optional=True),
     kind=RecordTable,
 )
 
 MEASUREMENT = table(
     "measurement",
     "measured data",
-    Text(key="title", meaning="title of the measurement", default="measurement"),
-    Text(key="model", meaning="the base model: a config, relative to this file", example="model.toml"),
+    Text("title", "title of the measurement", default="measurement"),
+    Text("model", "the base model: a config, relative to this file", example="model.toml"),
     Number.of(MODEL_ERROR),
     Number.of(RATE, optional=True),
     COLUMNS,
@@ -339,7 +327,7 @@ MEASUREMENT = table(
     Number.of(INPUT_GAIN_STD),
     Number.of(INPUT_HARMONICS_STD),
     UNCERTAIN,
-    TableList(key="test", meaning="the tests", item=TEST, example="measurement.test"),
+    TableList("test", "the tests", item=TEST, example="measurement.test"),
 )
 
 ROOT = table("", "measured data", MEASUREMENT)

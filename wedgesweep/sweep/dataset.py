@@ -10,17 +10,7 @@ import numpy as np
 from wedgesweep.errors import SweepError
 from wedgesweep.files import regular, written
 from wedgesweep.kinds import SWEEP, confusion
-from wedgesweep.sweep.variables import (
-    CONTINUED,
-    FLAGS,
-    GRID,
-    OF_LIFT_OFF,
-    REQUIRED,
-    SCALED,
-    TRANSIENT,
-    VARIABLES,
-    Variable,
-)
+from wedgesweep.sweep.variables import FLAGS, GRID, REQUIRED, SCALED, Variable, variables_of
 
 # xarray takes a third of a second to load, in which the processes that solve cases could already do so.
 if TYPE_CHECKING:
@@ -47,7 +37,7 @@ def assemble(
     ordered = records if in_order else records[np.argsort(records["index"])]
     variables = {}
     dims, shape = tuple(case_dims), tuple(case_dims.values())
-    for variable in TRANSIENT if "scale" in dims else VARIABLES + OF_LIFT_OFF + CONTINUED:
+    for variable in variables_of("scale" in dims):
         if variable.name not in (records.dtype.names or ()) or variable.name not in long_names:
             continue
         values = ordered[variable.name]
@@ -155,8 +145,7 @@ def _faults(ds: "xr.Dataset") -> Iterator[str]:
     required = ("status", "message") if scaled else REQUIRED
     yield from (f"no variable {name}" for name in required if name not in ds)
     if "status" in ds and "friction_law" in ds.coords:
-        variables = TRANSIENT if scaled else VARIABLES + OF_LIFT_OFF + CONTINUED
-        known = {variable.name: variable for variable in variables}
+        known = {variable.name: variable for variable in variables_of(scaled)}
         yield from _shape_faults(ds, known, _case_dims(ds), coords)
 
 

@@ -7,8 +7,6 @@ that a record that was cut off by a kill is recognised and dropped.
 import errno
 import json
 import os
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from types import TracebackType
 from zlib import crc32
@@ -121,27 +119,18 @@ def _locked(path: Path) -> int:
     file = os.open(path, os.O_RDWR | os.O_CREAT, 0o644)
     try:
         if fcntl:
-            with _suppressed(NO_LOCKS):
-                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        # The run that had the lock until now may have finished, and deleted the file.
-        replaced = not (path.exists() and os.path.samestat(os.fstat(file), path.stat()))
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError as error:
         os.close(file)
         raise SweepError(f"{path}: another run is writing it; wait until it ends, or stop it") from error
-    if replaced:
+    except OSError as error:
+        if error.errno not in NO_LOCKS:
+            raise
+    # The run that had the lock until now may have finished, and deleted the file.
+    if not (path.exists() and os.path.samestat(os.fstat(file), path.stat())):
         os.close(file)
         return _locked(path)
     return file
-
-
-@contextmanager
-def _suppressed(numbers: tuple[int, ...]) -> Iterator[None]:
-    """Suppress errors of the operating system with these numbers."""
-    try:
-        yield
-    except OSError as error:
-        if error.errno not in numbers:
-            raise
 
 
 def _kept(path: Path, dtype: np.dtype, expected: dict[str, str]) -> tuple[int, np.ndarray]:

@@ -2,7 +2,7 @@
 
 from wedgesweep.config import Config
 from wedgesweep.rotation import ROTATION
-from wedgesweep.sweep.variables import CONTINUED, FORCES_OF_FACES, OF_LIFT_OFF, TRANSIENT, VARIABLES
+from wedgesweep.sweep.variables import FORCES_OF_FACES, OF_LIFT_OFF, variables_of
 
 # Variables that only joints of a suspension have, and those that only unilateral ones have.
 OF_JOINTS = (
@@ -43,7 +43,6 @@ def attributes(config: Config) -> dict[str, str]:
 
 def long_names(config: Config) -> dict[str, str]:
     """Return the long names of the variables that the datasets of a config have, by name."""
-    variables = TRANSIENT if config.transient else VARIABLES + OF_LIFT_OFF + CONTINUED
     words, absent = {**SUSPENSION, **(UNILATERAL if config.opens else {})}, OF_UNILATERAL
     if config.system == "oscillator":
         words, absent = SUSPENSION | _of_oscillator(config), OF_UNILATERAL + OF_JOINTS
@@ -52,7 +51,11 @@ def long_names(config: Config) -> dict[str, str]:
         absent = ("force",)
     if config.transient:
         words["per"] = "in all"
-    return {each.name: each.long_name.format(**words) for each in variables if each.name not in absent}
+    return {
+        each.name: each.long_name.format(**words)
+        for each in variables_of(config.transient)
+        if each.name not in absent
+    }
 
 
 def _of_oscillator(config: Config) -> dict[str, str]:

@@ -130,13 +130,18 @@ REQUIRED = ("status", "message", "period", "periodicity")
 MESSAGE_BYTES = 200
 
 
+def variables_of(transient: bool, continued: bool = True) -> tuple[Variable, ...]:
+    """All variables that a dataset may have: of an input that does not repeat, or of sines."""
+    return TRANSIENT if transient else VARIABLES + OF_LIFT_OFF + CONTINUED * continued
+
+
 def record_dtype(sizes: Mapping[str, int], continued: bool = False) -> np.dtype:
     """Layout of the record of a case: its index and every variable, with dimensions from ``sizes``.
 
     Without samples (``sizes`` of "phase" or "time" 0) there are no waveforms; ``continued`` adds CONTINUED.
     """
     fields: list[tuple[Any, ...]] = [("index", "i8")]
-    for variable in TRANSIENT if "time" in sizes else VARIABLES + OF_LIFT_OFF + CONTINUED * continued:
+    for variable in variables_of("time" in sizes, continued):
         if variable.dims in (PHASE, TIME) and not sizes[variable.dims[0]]:
             continue
         dtype = f"S{MESSAGE_BYTES}" if variable.dtype == "str" else variable.dtype

@@ -26,14 +26,14 @@ from wedgesweep.quantity import Quantity
 
 MOTIONS = ("release", "sweep", "random", "bump")
 KIND = Choice(
-    key="kind",
-    meaning="steady; transient (see motion); loop: force under a motion of frequency_hz and amplitude_mm",
+    "kind",
+    "steady; transient (see motion); loop: force under a motion of frequency_hz and amplitude_mm",
     choices=KINDS,
     default=STEADY,
 )
 MOTION = Choice(
-    key="motion",
-    meaning="transient: release; sweep or random from frequency_hz to to_hz; bump of length 1/frequency_hz",
+    "motion",
+    "transient: release; sweep or random from frequency_hz to to_hz; bump of length 1/frequency_hz",
     choices=MOTIONS,
     default="release",
 )
@@ -41,15 +41,15 @@ DURATION = Quantity("duration_s", 10.0, "transient, loop: length of the record",
 TO = Quantity("to_hz", nan, "transient: highest frequency of a sweep or of random motion", above=0.0)
 RELEASE = Quantity("release_mm", 0.0, "transient: displacement at the start")
 THROWN = Quantity("release_mm_per_s", 0.0, "transient: velocity at the start")
-KNOWN = Flag(key="known", meaning="whether measured.toml states the amplitude", default=True)
+KNOWN = Flag("known", "whether measured.toml states the amplitude", default=True)
 
 ROOT = table(
     "",
     "tests to make",
     UNCERTAIN,
     TableList(
-        key="test",
-        meaning="the tests",
+        "test",
+        "the tests",
         item=table(
             "test",
             "one test",
