@@ -18,20 +18,17 @@ def spectral_radius(matrix):
 
 
 @pytest.mark.parametrize("n", [1, 2, 3, 8])
-def test_inverse_determinant_and_spectral_radius(n):
+def test_inverse_and_spectral_radius(n):
     for seed in range(20):
         matrix = np.random.default_rng(seed).normal(size=(n, n))
-        inverse, determinant = inverted(matrix.copy())
-        np.testing.assert_allclose(inverse @ matrix, np.eye(n), atol=1e-10)
-        assert determinant == pytest.approx(np.linalg.det(matrix), rel=1e-10)
+        np.testing.assert_allclose(inverted(matrix.copy()) @ matrix, np.eye(n), atol=1e-10)
         assert spectral_radius(matrix) == pytest.approx(np.abs(np.linalg.eigvals(matrix)).max(), rel=1e-7)
 
 
 def test_pivots_that_are_zero():
     swap = np.array([[0.0, 1.0], [1.0, 0.0]])
-    inverse, determinant = inverted(swap.copy())
-    assert (inverse == swap).all()
-    assert determinant == -1.0
+    assert (inverted(swap.copy()) == swap).all()
+    assert not np.isfinite(inverted(np.ones((2, 2)))).all()
 
 
 def test_spectral_radius_of_matrices_without_a_basis_of_eigenvectors():

@@ -62,6 +62,30 @@ def test_it_is_what_a_long_run_ends_in(name):
         np.testing.assert_allclose(found.extremes[i], extremes, rtol=1e-5)
 
 
+def test_at_a_resonance_with_hardly_any_damping_a_response_is_found_in_a_few_periods():
+    """Its transient loses 1 to 6 percent per period; what has not died out must not pass as the answer."""
+    rows = np.concatenate(
+        [
+            parameters.record(
+                "coulomb",
+                1e-4,
+                1.14 * OMEGA_N,
+                friction={"dynamic": 0.0},
+                effects={"viscous_damping": {"coefficient": 120.0 * ratio}},
+            )
+            for ratio in (2e-3, 5e-3, 1e-2)
+        ]
+    )
+    found = periodic.respond(rows, periodic.at_rest(3), periodic.Accuracy(1e-8, 40, 1e-9), 256, 7)
+    assert (found.warm.period == 1).all()
+    assert (found.periods < 20).all()
+    for i in range(3):
+        settled = periodic.sampled(rows[i : i + 1], np.zeros((1, 12)), 4000, 1, 256, 1e-9).x[0]
+        assert 2.0 * np.abs(np.fft.rfft(settled)[1]) / 256 == pytest.approx(
+            np.abs(found.spectra[i, 0, 0]), rel=1e-6
+        )
+
+
 @pytest.mark.parametrize("name", [None, "viscous_damping", "guide_friction"])
 def test_forces_tell_for_how_long_a_normal_force_is_negative(name):
     rows = records(name, cases=(("coulomb", 2.2, 0.3e-3), ("static-dynamic", 2.2, 3e-3)))

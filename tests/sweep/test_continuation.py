@@ -175,7 +175,7 @@ def test_a_torn_line_is_solved_again_as_a_whole(tmp_path, monkeypatch, steep):
 
 
 def test_what_does_not_repeat_is_not_compared(tmp_path):
-    ds = run(tmp_path, STEEP + "max_periods = 40\n")
+    ds = run(tmp_path, STEEP + "max_periods = 16\n")
     late = (ds["period"] == 0) | (ds["period_down"] == 0)
     assert 0 < late.sum() < CASES
     assert (ds["coexisting"].where(late, -1) == -1).all()

@@ -79,7 +79,7 @@ def _inverse(by_state, places, h):
         for j in range(n):
             matrix[i, j] = -by_state[places[i], places[j]]
         matrix[i, i] += 1.0 / (GAMMA * h)
-    return inverted(matrix)[0]
+    return inverted(matrix)
 
 
 @allocating

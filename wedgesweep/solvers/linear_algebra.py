@@ -26,12 +26,12 @@ def places_of(chosen):
 
 @allocating
 def inverted(matrix):
-    """Inverse and determinant of a matrix (n, n), which is overwritten.
+    """Inverse of a matrix (n, n), which is overwritten; not finite if it is singular.
 
     By Gauss and Jordan's method, largest pivots first.
     """
     n = matrix.shape[0]
-    inverse, determinant = np.zeros((n, n)), 1.0
+    inverse = np.zeros((n, n))
     for i in range(n):
         inverse[i, i] = 1.0
     for k in range(n):
@@ -40,7 +40,6 @@ def inverted(matrix):
             if abs(matrix[i, k]) > abs(matrix[largest, k]):
                 largest = i
         pivot = matrix[largest, k]
-        determinant *= pivot if largest == k else -pivot
         for j in range(n):
             matrix[largest, j], matrix[k, j] = matrix[k, j], matrix[largest, j] / pivot
             inverse[largest, j], inverse[k, j] = inverse[k, j], inverse[largest, j] / pivot
@@ -50,7 +49,7 @@ def inverted(matrix):
                 for j in range(n):
                     matrix[i, j] -= factor * matrix[k, j]
                     inverse[i, j] -= factor * inverse[k, j]
-    return inverse, determinant
+    return inverse
 
 
 @allocating

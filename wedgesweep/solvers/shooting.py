@@ -23,8 +23,9 @@ from wedgesweep.solvers.period_map import run_case
 # Perturbation of the scaled state for J, at least NOISE times the tolerance of a step, and the least step
 # after which J is updated.
 PERTURBATION, NOISE, LEAST_STEP = 1e-6, 1e2, 1e-4
-# Limits of Newton's method: least determinant of I - J, largest eigenvalue of J.
-SINGULAR, UNSTABLE = 1e-3, 0.9999
+# Limits of Newton's method: largest number in the inverse of I - J (1 / (1 - eigenvalue), if there is only
+# one), by which it also enlarges errors of the map; largest eigenvalue of J.
+LARGEST_INVERSE, UNSTABLE = 1e3, 0.9999
 # Periods of plain integration before Newton's method is tried, from rest and after it has failed.
 NEWTON_INTERVAL = 8
 # If the distance is above STALE times the last one, J is computed again; with a new J, Newton's method has
@@ -132,8 +133,11 @@ def _run(y, periods, keeping, shooting):
 
 
 @allocating
-def monodromy(y, image, periods, moves, jacobian, shooting):
-    """Write J at y, whose image is known, by differences; returns the outcome and the periods run."""
+def monodromy(y, image, periods, keeping, moves, jacobian, shooting):
+    """Write J at y, whose image is known, by differences; returns the outcome and the periods run.
+
+    ``keeping``: whether the run to the image was kept. So are these, as other steps lead a little beside it.
+    """
     jacobian[:] = 0.0
     size = shooting.size
     run = 0
@@ -142,7 +146,7 @@ def monodromy(y, image, periods, moves, jacobian, shooting):
         if moves[k]:
             shifted = y.copy()
             shifted[k] += share * size[k]
-            outcome = _run(shifted, periods, False, shooting)
+            outcome = _run(shifted, periods, keeping, shooting)
             run += periods
             if outcome != OK:
                 jacobian[:] = np.nan
@@ -175,7 +179,7 @@ def known(matrix):
 
 @allocating
 def _newton_matrix(part):
-    """Inverse and determinant of I - J."""
+    """Inverse of I - J."""
     matrix = np.empty(part.shape)
     for i in range(part.shape[0]):
         for j in range(part.shape[1]):
@@ -193,21 +197,24 @@ def _stable_and_regular(jacobian, moves):
         return False
     part = _part(jacobian, moves)
     n = part.shape[0]
-    margin = _newton_matrix(part)[1]
+    inverse = _newton_matrix(part)
+    for i in range(n):
+        for j in range(n):
+            if not abs(inverse[i, j]) <= LARGEST_INVERSE:
+                return False
     if n == 1:
-        return abs(part[0, 0]) < UNSTABLE and margin >= SINGULAR
+        return abs(part[0, 0]) < UNSTABLE
     if n == 2:
         determinant = part[0, 0] * part[1, 1] - part[0, 1] * part[1, 0]
-        stable = abs(part[0, 0] + part[1, 1]) < 1.0 + determinant and determinant < UNSTABLE
-        return stable and margin >= SINGULAR
-    return spectral_radius(part) < UNSTABLE and margin >= SINGULAR
+        return abs(part[0, 0] + part[1, 1]) < 1.0 + determinant and determinant < UNSTABLE
+    return spectral_radius(part) < UNSTABLE
 
 
 @allocating
 def _newton_step(y, image, jacobian, moves, size):
     """Newton's next state."""
     places = places_of(moves)
-    inverse = _newton_matrix(_part(jacobian, moves))[0]
+    inverse = _newton_matrix(_part(jacobian, moves))
     following = image.copy()
     for i in range(places.size):
         step = 0.0
@@ -256,16 +263,17 @@ def newton_shooting(y, periods, jacobian, most, shooting):
     fresh = accepted = False
     while run < most:
         image = y.copy()
-        keeping = last < KEPT_BELOW or run == 0
+        near = last < KEPT_BELOW or run == 0
+        keeping = near and shooting.records
         if keeping:
             clear(shooting.memory.sums)
-        outcome = _run(image, periods, keeping and shooting.records, shooting)
+        outcome = _run(image, periods, keeping, shooting)
         run += periods
         if outcome != OK:
             copy(best, y)
             return False, outcome, run
         now = _distance(image, y, size)
-        if now <= shooting.tolerance and keeping:
+        if now <= shooting.tolerance and near:
             copy(image, y)
             return True, OK, run
         moves = _moving(image, periods, shooting)
@@ -283,7 +291,7 @@ def newton_shooting(y, periods, jacobian, most, shooting):
         if now > STALE * last or not (accepted or _stable_and_regular(jacobian, moves)):
             if (fresh and now > GAIN * last) or run + periods * (1 + places_of(moves).size) > most:
                 break
-            outcome, more = monodromy(y, image, periods, moves, jacobian, shooting)
+            outcome, more = monodromy(y, image, periods, keeping, moves, jacobian, shooting)
             run += more
             fresh = True
             if outcome != OK or not _stable_and_regular(jacobian, moves):
@@ -400,13 +408,15 @@ def _integrate(y, periods, jacobian, run, shooting):
                 jacobian[:] = np.nan
             return Found(OK, period, run, 0)
         if count % NEWTON_INTERVAL == 0:
-            trial, periods = y.copy(), guessed_period(back)
-            moves = shooting.memory.free[: y.size].copy()
-            jacobian[:] = np.nan
-            found = _shoot(trial, periods, jacobian, most - run, shooting)
-            run += found.run
-            if found.period:
-                copy(trial, y)
-                return Found(OK, found.period, run, found.kept)
+            moves, guessed = shooting.memory.free[: y.size].copy(), guessed_period(back)
+            # A spiral into a fixed point seems to repeat after a few periods as well.
+            for periods in range(1, guessed + 1, max(1, guessed - 1)):
+                trial = y.copy()
+                jacobian[:] = np.nan
+                found = _shoot(trial, periods, jacobian, most - run, shooting)
+                run += found.run
+                if found.period:
+                    copy(trial, y)
+                    return Found(OK, found.period, run, found.kept)
             run += _creep(y, moves, past, count, shooting)
     return Found(OK, 0, run, 0)
