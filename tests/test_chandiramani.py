@@ -18,7 +18,7 @@ from wedgesweep.solvers.trajectory import Window
 
 HERTZ = np.arange(20.0, 41.0)
 BY_NAME = {hypothesis.name: hypothesis for hypothesis in HYPOTHESES}
-ONE_AMPLITUDE, ONE_ACCELERATION, _ = INTERPRETATIONS
+_, ONE_ACCELERATION, _ = INTERPRETATIONS
 PHASE = 2.0 * np.pi * np.arange(2048) / 2048
 
 

@@ -175,6 +175,7 @@ def test_fail_fast_keeps_what_is_finished(here):
     told = run("locked.toml", "--fail-fast", code=1)
     assert "stopped at coulomb, beta 1.1, amplitude 2 mm: normal forces not unique" in told
     assert "1 finished case is stored in locked.nc.partial" in told
+    run("locked.toml", "--fail-fast", code=1)  # going on does not make it forget the failure
     assert not (here / "locked.nc").exists()
     told = invoke("status", "locked.nc", code=1)
     assert "locked.nc.partial: unfinished\ntitle: small" in told

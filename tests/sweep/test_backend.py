@@ -194,16 +194,3 @@ def test_options_that_contradict_each_other(tmp_path):
     assert "--n-jobs has no effect with --scheduler" in told
     told = refused(tmp_path, "--scheduler", "tcp://127.0.0.1:9", "--backend", "loky")
     assert "--scheduler needs --backend dask" in told
-
-
-@pytest.mark.acceptance
-def test_interrupted_it_keeps_what_is_finished(tmp_path, cluster, expected):
-    def stop(records, total):
-        if records["index"].size and records["index"].max() > 7:
-            raise KeyboardInterrupt
-
-    sweep = small_sweep.sweep(tmp_path, LONG)
-    with pytest.raises(KeyboardInterrupt):
-        sweep.run(backend=through(cluster), progress=stop)
-    assert sweep.journal_path.exists()
-    assert_same_numbers(sweep.run(backend=through(cluster)), expected)

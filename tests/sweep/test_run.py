@@ -14,12 +14,10 @@ from tests.command import hang_limit, invoke
 from tests.small_sweep import LOCKED, assert_same_numbers
 from wedgesweep import config
 from wedgesweep.cli import failure
-from wedgesweep.errors import MismatchError, SweepError
 from wedgesweep.response import Response
 from wedgesweep.simulate import Settings
 from wedgesweep.solvers.trajectory import CaseError
 from wedgesweep.sweep import cases, journal
-from wedgesweep.sweep.run import CaseFailedError
 from wedgesweep.sweep.variables import STATUSES
 
 CONFIG = small_sweep.CONFIG.replace("0.3, 1.1, 2.5", "1.1").replace(
@@ -105,42 +103,6 @@ def test_no_case_is_solved_twice_but_one_whose_record_is_torn(tmp_path, finished
     sweep.journal_path.write_bytes(sweep.journal_path.read_bytes()[:-100])
     assert_same_numbers(sweep.run(n_jobs=1), finished[1])
     assert sorted(solved.values()) == [1] * (CASES - 1) + [2]
-
-
-def test_finished_all_but_the_dataset(tmp_path, finished, solved):
-    sweep = small_sweep.sweep(tmp_path, CONFIG)
-    interrupted(sweep, CASES)
-    assert_same_numbers(sweep.run(n_jobs=1), finished[1])
-    assert sum(solved.values()) == CASES
-
-
-def test_stored_tells_a_complete_dataset_from_everything_else(finished, tmp_path):
-    sweep, ds = finished
-    assert_same_numbers(sweep.stored(), ds)
-    other = small_sweep.sweep(sweep.out.parent, CONFIG.replace("[1.1]", "[2.5]"))
-    with pytest.raises(MismatchError, match=r"sweep\.beta: \[1\.1\] there, \[2\.5\] now"):
-        other.stored()
-    absent = small_sweep.sweep(tmp_path, CONFIG)
-    assert absent.stored() is None
-    absent.out.write_text("mine")
-    with pytest.raises(SweepError, match="not a netCDF dataset"):
-        absent.stored()
-    with pytest.raises(SweepError, match="not a netCDF dataset"):
-        absent.discard()
-    xr.Dataset({"mine": 1}).to_netcdf(absent.out)
-    with pytest.raises(SweepError, match="not the dataset of a sweep"):
-        absent.discard()
-    assert absent.out.exists()
-
-
-def test_fail_fast_stops_and_keeps_what_is_finished(tmp_path):
-    sweep = small_sweep.sweep(tmp_path, LOCKED)
-    for _ in range(2):  # going on does not make it forget the failure
-        with pytest.raises(CaseFailedError, match=r"coulomb, beta 1\.1, amplitude 2 mm: .*not unique"):
-            sweep.run(n_jobs=1, fail_fast=True)
-        assert not sweep.out.exists()
-    assert journal.read(sweep.journal_path, sweep.dtype)["index"].tolist() == [0]
-    assert sweep.run(n_jobs=1)["status"].size == 2
 
 
 def test_cases_out_of_time_are_tried_again(tmp_path, finished):

@@ -11,8 +11,6 @@ from tests.small_sweep import faults
 from wedgesweep import config, figures
 from wedgesweep.config.physics import physics
 from wedgesweep.figures.transient import loop, ring_down
-from wedgesweep.sweep import unfinished
-from wedgesweep.sweep.journal import Journal
 from wedgesweep.sweep.run import Sweep
 
 HEAD = """\
@@ -95,21 +93,6 @@ def test_a_file_that_changed_is_another_sweep(folder):
     found = config.parse(xr.load_dataset("record.nc").attrs["config"])
     with pytest.raises(config.ConfigError, match="has changed"):
         _ = found.input
-
-
-def test_an_interrupted_sweep_is_resumed(folder):
-    whole = Sweep(config.load("release.toml"), folder / "whole.nc")
-    expected = whole.run(n_jobs=1)
-    records = whole.solve(np.array([0, 4]))
-    part = Sweep(config.load("release.toml"), folder / "part.nc")
-    with Journal(part.journal_path, part.dtype, part.journal_header) as journal:
-        journal.append(records)
-    drawn = unfinished.dataset_of(folder / "part.nc")
-    assert (drawn["status"] == 0).sum() == 2
-    assert "2 ok, 4 remaining" in invoke("status", "part.nc")
-    resumed = part.run(n_jobs=1)
-    for name in ("displacement", "force", "dissipated_energy"):
-        assert np.array_equal(resumed[name], expected[name])
 
 
 def test_the_work_of_friction_is_the_energy_that_is_lost(folder):
