@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from tests.diagnose.answers import diagnosed, is_told
-from tests.diagnose.test_transients import MEASURED, OSCILLATOR, WEDGE
+from tests.diagnose.rigs import HEAD, TRANSIENT, saved
+from tests.diagnose.test_transients import OSCILLATOR, WEDGE
 from wedgesweep.config import parse
 from wedgesweep.diagnose.diagnosis import data_of
 from wedgesweep.diagnose.next_test.transients import releases
@@ -32,14 +33,9 @@ def made(rig, test, rate, effects):
 
 def write(folder, rig, tables, columns):
     """Files of tests; returns the path of measured.toml."""
-    (folder / "model.toml").write_text(rig)
-    text = MEASURED.replace('displacement = { column = "x", unit = "mm" }\n', columns)
-    for i, table in enumerate(tables):
-        header = ",".join(("t", "a", "u")[: len(table)])
-        np.savetxt(folder / f"t{i}.csv", np.column_stack(table), "%.12g", ",", header=header, comments="")
-        text += f'[[measurement.test]]\nfile = "t{i}.csv"\nkind = "transient"\n'
-    (folder / "measured.toml").write_text(text)
-    return folder / "measured.toml"
+    header = ",".join(("t", "a", "u")[: len(tables[0])])
+    tests = {f"t{i}": (table, TRANSIENT) for i, table in enumerate(tables)}
+    return saved(folder, rig, HEAD + columns, header, tests)
 
 
 @pytest.mark.acceptance

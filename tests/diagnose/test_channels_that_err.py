@@ -6,51 +6,27 @@ import numpy as np
 import pytest
 from scipy.signal import lsim
 
+from tests.diagnose.rigs import FORCE, FORCED, HEAD, oscillator, saved
 from wedgesweep import api
 
 MASS, STIFFNESS, DAMPING, FRICTION = 2.0, 8000.0, 8.0, 2.0
-MODEL = f"""
-[oscillator]
-mass_kg = {MASS}
-spring_N_per_mm = {1e-3 * STIFFNESS}
-damping_N_s_per_m = {DAMPING}
-contact = "ground"
-normal_force_N = {{normal}}
-[friction]
-dynamic = 1.0
-static = 1.0
-[sweep]
-friction_law = "coulomb"
-excitation = "force"
-frequency_hz = 1.0
-amplitude_N = 1.0
-"""
-MEASURED = """
-[measurement]
-model = "model.toml"
-[measurement.columns]
-time = { column = "t", unit = "s" }
-displacement = { column = "x", unit = "mm", of = "absolute" }
-"""
-FORCE = 'force = { column = "F", unit = "N" }\n'
+ABSOLUTE = 'displacement = { column = "x", unit = "mm", of = "absolute" }\n'
 INPUT = 'input = { column = "F", unit = "N", quantity = "force" }\n'
-TEST = '[[measurement.test]]\nfile = "{}.csv"\nkind = "{}"\n'
 RATE, DELAY = 1000.0, 0.004
 CANDIDATES = ("channel_delay", "force_gain", "input_gain", "viscous_damping", "bolster_stiffness")
 
 
 def save(folder: Path, kind: str, channels: str, normal: float, records: list[np.ndarray]) -> Path:
     """Files of records, columns time (s), displacement (m) and force (N), with 0.3 % of noise."""
-    random, text = np.random.default_rng(7), MEASURED + channels
+    random, tests = np.random.default_rng(7), {}
     for i, record in enumerate(records):
         noisy = record.copy()
         noisy[:, 1:] += 0.003 * record[:, 1:].std(axis=0) * random.standard_normal((len(record), 2))
         noisy[:, 1] *= 1e3
-        np.savetxt(folder / f"{i}.csv", noisy, "%.9g", ",", header="t,x,F", comments="")
-        text += TEST.format(i, kind)
-    (folder / "model.toml").write_text(MODEL.format(normal=normal))
-    (folder / "measured.toml").write_text(text)
-    return folder / "measured.toml"
+        tests[i] = noisy.T, f'kind = "{kind}"\n'
+    numbers = {"mass_kg": MASS, "spring_N_per_mm": 1e-3 * STIFFNESS, "damping_N_s_per_m": DAMPING}
+    model = oscillator(1.0, FORCED, contact="ground", normal_force_N=normal, **numbers)
+    return saved(folder, model, HEAD + ABSOLUTE + channels, "t,x,F", tests)
 
 
 def loops(late: float = 0.0, gain: float = 1.0) -> list[np.ndarray]:

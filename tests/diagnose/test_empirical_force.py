@@ -6,28 +6,21 @@ import numpy as np
 import pytest
 
 from tests.command import invoke
-from tests.diagnose.test_loops import MEASURED, TEST
+from tests.diagnose.rigs import FORCE, FORCED, HEAD, LOOP, PLACE, oscillator, saved
 from wedgesweep import api, config
 from wedgesweep.config import ConfigError, force_table
 from wedgesweep.effects import empirical_force as table
 from wedgesweep.measured import read
 
-PLAIN = """
-[oscillator]
-mass_kg = 2.0
-spring_N_per_mm = 5.0
-damping_N_s_per_m = 50.0
-normal_force_N = 10.0
-contact = "ground"
-[friction]
-dynamic = 1.0
-static = 1.0
-[sweep]
-friction_law = "coulomb"
-excitation = "force"
-frequency_hz = 10.0
-amplitude_N = 40.0
-"""
+PLAIN = oscillator(
+    friction=1.0,
+    sweep=FORCED,
+    mass_kg=2.0,
+    spring_N_per_mm=5.0,
+    damping_N_s_per_m=50.0,
+    normal_force_N=10.0,
+    contact="ground",
+)
 CANDIDATES = ["friction_level", "cubic_stiffness"]
 
 
@@ -80,7 +73,7 @@ def test_fault_of_a_table_is_told_with_its_line(tmp_path, line, changed, told):
 
 def hidden_in_loops(folder, hidden):
     """Five loops of a mass on a spring that rubs, with a further force (SI)."""
-    rng, names = np.random.default_rng(7), []
+    rng, tests = np.random.default_rng(7), {}
     for frequency, amplitude in ((1.0, 0.02), (2.0, 0.01), (0.5, 0.015), (1.5, 0.018), (0.7, 0.008)):
         t = np.arange(round(2000.0 / frequency)) / 250.0
         tones = ((1.0, 2.0 * np.pi * frequency, 0.0), (0.3, 0.74 * np.pi * frequency, 1.0))
@@ -91,12 +84,8 @@ def hidden_in_loops(folder, hidden):
         force = 2.0 * a + 5000.0 * x + 50.0 * v + 10.0 * np.sign(v) + hidden(x, v)
         force += 5e-3 * force.std() * rng.standard_normal(t.size)
         seen = 1e3 * x + 3e-4 * rng.standard_normal(t.size)
-        names.append(frequency)
-        rows = np.column_stack([t, seen, force])
-        np.savetxt(folder / f"{frequency}.csv", rows, "%.8g", ",", header="t,x,F", comments="")
-    (folder / "model.toml").write_text(PLAIN)
-    (folder / "measured.toml").write_text(MEASURED + "".join(map(TEST.format, names)))
-    return read(folder / "measured.toml")
+        tests[frequency] = (t, seen, force), LOOP
+    return read(saved(folder, PLAIN, HEAD + PLACE + FORCE, "t,x,F", tests))
 
 
 def bump(x, v):

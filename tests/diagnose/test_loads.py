@@ -5,39 +5,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from tests.diagnose.rigs import FORCE, HEAD, LOOP, oscillator, saved
 from wedgesweep import api
 from wedgesweep.diagnose.diagnosis import excluded_effects
 from wedgesweep.errors import InputError
 
-MODEL = """
-[oscillator]
-mass_kg = 1.0
-spring_N_per_mm = 0.2
-normal_force_N = 10.0
-contact = "ground"
-[friction]
-dynamic = 0.3
-static = 0.3
-[sweep]
-friction_law = "coulomb"
-frequency_hz = 1.0
-amplitude_mm = 1.0
-"""
-MEASURED = """
-[measurement]
-model = "model.toml"
-[measurement.columns]
-time = { column = "t", unit = "s" }
-displacement = { column = "x", unit = "mm", of = "absolute" }
-force = { column = "F", unit = "N" }
-"""
+MODEL = oscillator(mass_kg=1.0, spring_N_per_mm=0.2, normal_force_N=10.0, contact="ground")
+ABSOLUTE = 'displacement = { column = "x", unit = "mm", of = "absolute" }\n'
 RECORDED = 'normal_force = { column = "n", unit = "N", zero_std = 0.02 }\n'
-TEST = """
-[[measurement.test]]
-file = "{0}.csv"
-kind = "loop"
-model = {{ "oscillator.normal_force_N" = {0} }}
-"""
 LOADS, SAME = (5.0, 10.0, 20.0, 40.0), (10.0, 10.0)
 CANDIDATES = ("guide_friction", "load_dependent_friction", "friction_level", "viscous_damping")
 PART, EXPONENT = 1.5, 1.0 / 3.0
@@ -59,19 +34,16 @@ def write(folder: Path, friction, loads=LOADS, sensor=None) -> Path:
     ``sensor``: load (n,) as recorded at times (s) in place of a stated one.
     """
     random, time, omega = np.random.default_rng(3), np.arange(3000) / 500.0, 2.0 * np.pi
-    text = MEASURED if sensor is None else MEASURED + RECORDED
+    tests = {}
     for load in dict.fromkeys(loads):
         x = 0.02 * np.sin(omega * time)
         force = (200.0 - omega**2) * x + friction(load) * np.sign(np.cos(omega * time))
         force = force + 0.01 * force.std() * random.standard_normal(time.size)
         shown = np.zeros(time.size) if sensor is None else sensor(load, time)
-        columns = np.column_stack([time, 1e3 * x, force, shown])
-        np.savetxt(folder / f"{load}.csv", columns, "%.9g", ",", "\n", "t,x,F,n", "", "")
-        test = TEST.format(load)
-        text += test if sensor is None else test.partition("model")[0]
-    (folder / "model.toml").write_text(MODEL)
-    (folder / "measured.toml").write_text(text)
-    return folder / "measured.toml"
+        stated = "" if sensor else f'model = {{ "oscillator.normal_force_N" = {load} }}\n'
+        tests[load] = (time, 1e3 * x, force, shown), LOOP + stated
+    head = HEAD + ABSOLUTE + FORCE + (RECORDED if sensor else "")
+    return saved(folder, MODEL, head, "t,x,F,n", tests)
 
 
 @pytest.mark.acceptance

@@ -8,6 +8,7 @@ import pytest
 
 from tests.command import invoke
 from tests.diagnose.answers import diagnosed, is_told
+from tests.diagnose.rigs import FORCE, HEAD, LOOP, PLACE, TEST, oscillator, saved
 from wedgesweep.config import parse
 from wedgesweep.diagnose.explanation import POSSIBLE
 from wedgesweep.diagnose.loop import motion_noise
@@ -27,32 +28,10 @@ from wedgesweep.measured import MeasuredError, read
 from wedgesweep.report.sentence import sentence
 from wedgesweep.solvers import imposed_motion
 
-OSCILLATOR = """
-[oscillator]
-mass_kg = 2.0
-spring_N_per_mm = 0.5
-damping_N_s_per_m = 3.0
-normal_force_N = 10.0
-[friction]
-static = 0.3
-dynamic = 0.3
-[sweep]
-friction_law = "coulomb"
-frequency_hz = 1.0
-amplitude_mm = 1.0
-"""
-MEASURED = """
-[measurement]
-model = "model.toml"
-[measurement.columns]
-time = { column = "t", unit = "s" }
-displacement = { column = "x", unit = "mm" }
-force = { column = "F", unit = "N" }
-"""
-TEST = '[[measurement.test]]\nfile = "{}.csv"\nkind = "loop"\n'
+OSCILLATOR = oscillator(mass_kg=2.0, spring_N_per_mm=0.5, damping_N_s_per_m=3.0, normal_force_N=10.0)
 RATE, CELLS = 500.0, 10
 # Zero of the force (N), and of an oscillator's displacement (m): the tool does not know them.
-ZERO, PLACE = 0.5, 3e-3
+ZERO, BESIDE = 0.5, 3e-3
 
 
 def motion_of(amplitude, frequency, duration):
@@ -85,24 +64,16 @@ def write(
     config = parse(model, "model")
     values = merge(config.effects, effects or {})
     record = config.record_with(values, config.case_list()[0].law, 0.0)
-    sign, place = (1.0, PLACE) if config.system == "oscillator" else (-1.0, 0.0)
-    text = MEASURED + more
-    (folder / "model.toml").write_text(model)
+    sign, place = (1.0, BESIDE) if config.system == "oscillator" else (-1.0, 0.0)
+    tests = {}
     for i, each in enumerate(motions):
         fine = motion_of(*each)
         force = imposed_motion.forces(record, *(sign * fine), 1.0 / RATE / CELLS, deflected)[0]
         n = force.size // CELLS
-        table = np.column_stack(
-            [
-                np.arange(n) / RATE,
-                1e3 * (fine[0].reshape(n, CELLS).mean(1) + place + noise[0] * rng.standard_normal(n)),
-                force.reshape(n, CELLS).mean(1) + noise[1] * rng.standard_normal(n) + ZERO,
-            ]
-        )
-        np.savetxt(folder / f"loop{i}.csv", table, "%.10g", ",", header="t,x,F", comments="")
-        text += TEST.format(f"loop{i}")
-    (folder / "measured.toml").write_text(text)
-    return folder / "measured.toml"
+        x = fine[0].reshape(n, CELLS).mean(1) + place + noise[0] * rng.standard_normal(n)
+        force = force.reshape(n, CELLS).mean(1) + noise[1] * rng.standard_normal(n) + ZERO
+        tests[f"loop{i}"] = (np.arange(n) / RATE, 1e3 * x, force), LOOP
+    return saved(folder, model, HEAD + PLACE + FORCE + more, "t,x,F", tests)
 
 
 def test_noise_of_a_filter_and_of_derivatives():
@@ -384,12 +355,12 @@ def test_a_jump_may_be_in_the_sample_before_it_or_after_it():
 @pytest.mark.acceptance
 def test_a_cause_whose_size_differs_from_record_to_record_is_told_with_each_size(tmp_path):
     forces, path = (2.0, 4.0), tmp_path / "measured.toml"
-    text, model = MEASURED, OSCILLATOR.replace("normal_force_N = 10.0", "normal_force_N = 0.0")
+    text, model = HEAD + PLACE + FORCE, OSCILLATOR.replace("normal_force_N = 10.0", "normal_force_N = 0.0")
     for i, force in enumerate(forces):
         folder = tmp_path / str(i)
         folder.mkdir()
         write(folder, model, effects={"guide_friction": {"force": force}}, seed=i)
-        text += TEST.format(f"{i}/loop0")
+        text += TEST.format(f"{i}/loop0") + LOOP
     path.write_text(text)
     (tmp_path / "model.toml").write_text(model)
     found = diagnosed(path, ["guide_friction", "viscous_damping"])

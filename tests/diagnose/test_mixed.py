@@ -5,6 +5,7 @@ import pytest
 
 from tests.command import invoke
 from tests.diagnose import test_loops, test_transients
+from tests.diagnose.rigs import FORCE, HEAD, LOOP, PLACE, TEST, TRANSIENT
 from wedgesweep import diagnosis_result
 from wedgesweep.config import parse
 from wedgesweep.diagnose.cross_validation import local_numbers
@@ -23,9 +24,9 @@ def write(folder, effects=None):
     """Two releases and a loop of one rig; returns the path of measured.toml."""
     test_transients.write(folder, MODEL, effects, test_transients.STARTS[:2])
     test_loops.write(folder, MODEL, effects, motions=((0.01, 1.1, 8.0),))
-    kinds = {"drop0": "transient", "loop0": "loop", "drop1": "transient"}
-    tests = (f'[[measurement.test]]\nfile = "{n}.csv"\nkind = "{k}"\n' for n, k in kinds.items())
-    (folder / "measured.toml").write_text(test_loops.MEASURED + "".join(tests))
+    kinds = {"drop0": TRANSIENT, "loop0": LOOP, "drop1": TRANSIENT}
+    tests = "".join(TEST.format(name) + kind for name, kind in kinds.items())
+    (folder / "measured.toml").write_text(HEAD + PLACE + FORCE + tests)
     return folder / "measured.toml"
 
 
@@ -88,14 +89,10 @@ def test_gains_of_inputs_belong_to_the_tests_that_have_one(tmp_path):
     rng = np.random.default_rng(4)
     table = [time, 1e3 * moved + 0.02 * rng.standard_normal(time.size), 1e3 * base * np.sin(turns)]
     np.savetxt(tmp_path / "sine.csv", np.array(table).T, "%.12g", ",", header="t,x,u", comments="")
-    text = test_loops.MEASURED.replace("[measurement]\n", "[measurement]\ninput_gain_std = 0.02\n", 1)
+    text = (HEAD + PLACE + FORCE).replace("[measurement]\n", "[measurement]\ninput_gain_std = 0.02\n", 1)
     text += 'input = { column = "u", unit = "mm", quantity = "displacement" }\n'
-    for name, more in (
-        ("sine", ""),
-        ("drop0", 'kind = "transient"\nundriven = true\n'),
-        ("loop0", 'kind = "loop"\n'),
-    ):
-        text += f'[[measurement.test]]\nfile = "{name}.csv"\n{more}'
+    kinds = {"sine": "", "drop0": f"{TRANSIENT}undriven = true\n", "loop0": LOOP}
+    text += "".join(TEST.format(name) + kind for name, kind in kinds.items())
     (tmp_path / "measured.toml").write_text(text)
     data = data_of(read(tmp_path / "measured.toml"))
     assert all("input_gain" in part.uncertain for part in data.parts)
@@ -120,8 +117,8 @@ def test_the_start_of_a_frame_has_columns_of_its_own_beside_steady_tests(tmp_pat
     time = np.arange(1000) / 500.0
     table = np.column_stack([time, 0.5 * np.sin(2.0 * np.pi * 10.0 * time)])
     np.savetxt(tmp_path / "sine.csv", table, "%.12g", ",", header="t,x", comments="")
-    text = test_transients.MEASURED + '[[measurement.test]]\nfile = "sine.csv"\nfrequency_hz = 10.0\n'
-    (tmp_path / "measured.toml").write_text(text + test_transients.TEST.format("drop0"))
+    text = HEAD + PLACE + '[[measurement.test]]\nfile = "sine.csv"\nfrequency_hz = 10.0\n'
+    (tmp_path / "measured.toml").write_text(text + TEST.format("drop0") + TRANSIENT)
     data = data_of(read(tmp_path / "measured.toml"))
     model = Search.of(data, []).model("fixture_resonance")
     start = model.start(

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from tests.command import invoke
-from tests.diagnose.test_transients import MEASURED, TEST
+from tests.diagnose.rigs import HEAD, PLACE, TEST
 
 PENDULUM = """
 [oscillator]
@@ -67,6 +67,6 @@ def test_friction_of_a_pendulum_is_found_in_its_units(files: Path) -> None:
 def test_lengths_of_a_rotation_are_refused(tmp_path: Path) -> None:
     (tmp_path / "model.toml").write_text(PENDULUM)
     (tmp_path / "decay.csv").write_text("t,x\n" + "".join(f"{0.01 * i},{i % 7}\n" for i in range(300)))
-    (tmp_path / "wrong.toml").write_text(MEASURED + TEST.format("decay"))
+    (tmp_path / "wrong.toml").write_text(HEAD + PLACE + TEST.format("decay"))
     answer = invoke("check", tmp_path / "wrong.toml", code=2)
     assert "mm is not a unit of an angle or a torque" in answer

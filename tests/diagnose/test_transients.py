@@ -5,6 +5,7 @@ import pytest
 from scipy.signal import lfilter
 
 from tests.diagnose.answers import diagnosed, is_told
+from tests.diagnose.rigs import HEAD, PLACE, TRANSIENT, oscillator, saved
 from wedgesweep import api, excitation
 from wedgesweep.config import parse
 from wedgesweep.diagnose.least_squares import minimise
@@ -15,29 +16,14 @@ from wedgesweep.measured import MeasuredError, read
 from wedgesweep.solvers import periodic
 from wedgesweep.systems import state_count
 
-OSCILLATOR = """
-[oscillator]
-mass_kg = 2.0
-spring_N_per_mm = 0.5
-damping_N_s_per_m = 1.0
-normal_force_N = 1.0
-[friction]
-static = 0.3
-dynamic = 0.3
-[sweep]
-friction_law = "coulomb"
-beta = 1.0
-amplitude_mm = 1.0
-"""
+OSCILLATOR = oscillator(
+    sweep="beta = 1.0\namplitude_mm = 1.0\n",
+    mass_kg=2.0,
+    spring_N_per_mm=0.5,
+    damping_N_s_per_m=1.0,
+    normal_force_N=1.0,
+)
 WEDGE = '[sweep]\nfriction_law = "coulomb"\nbeta = [1.0]\namplitude_mm = [0.1]\n'
-MEASURED = """
-[measurement]
-model = "model.toml"
-[measurement.columns]
-time = { column = "t", unit = "s" }
-displacement = { column = "x", unit = "mm" }
-"""
-TEST = '[[measurement.test]]\nfile = "{}.csv"\nkind = "transient"\n'
 # Starts: displacement (m) and velocity (m/s). The zero of the sensor (m) is unknown.
 STARTS = ((0.01, 0.0), (-0.006, 0.1), (0.02, 0.0))
 ZERO = 1e-3
@@ -76,18 +62,14 @@ def write(
 ):
     """Files of releases from some starts; returns the path of measured.toml."""
     rng = np.random.default_rng(seed)
-    text = MEASURED
-    (folder / "model.toml").write_text(model)
+    tests = {}
     for i, start in enumerate(start for start in starts for _ in range(repeats)):
         varied = np.array(start) * (1.0 + 0.02 * (i % repeats))
         x = free_motion(parse(model, "model"), effects or {}, varied, rate, samples)
         x = x + ZERO * start[0] / starts[0][0] + noise * coloured(rng, x.size, pole)
-        table = np.column_stack([np.arange(samples) / rate, 1e3 * x])
-        np.savetxt(folder / f"drop{i}.csv", table, "%.12g", ",", header="t,x", comments="")
-        text += TEST.format(f"drop{i}")
-        text += f'repeat_of = "drop{i - i % repeats}.csv"\n' if i % repeats else ""
-    (folder / "measured.toml").write_text(text)
-    return folder / "measured.toml"
+        repeat = f'repeat_of = "drop{i - i % repeats}.csv"\n' if i % repeats else ""
+        tests[f"drop{i}"] = (np.arange(samples) / rate, 1e3 * x), TRANSIENT + repeat
+    return saved(folder, model, HEAD + PLACE, "t,x", tests)
 
 
 def test_starts_and_zero_are_found_and_the_misfit_is_noise(tmp_path):
@@ -200,18 +182,14 @@ def test_a_ring_down_that_is_taken_for_steady_is_told_what_it_is(tmp_path):
 def test_a_test_with_numbers_of_its_own_is_the_same_beside_others_and_alone(tmp_path):
     """A rig that is released empty and loaded."""
     loaded = parse(OSCILLATOR.replace("mass_kg = 2.0", "mass_kg = 8.0"), "model")
-    rng, text = np.random.default_rng(3), MEASURED
-    (tmp_path / "model.toml").write_text(OSCILLATOR)
+    rng, tests = np.random.default_rng(3), {}
     for name, config, more in (
         ("loaded", loaded, 'model = { "oscillator.mass_kg" = 8.0 }\n'),
         ("empty", parse(OSCILLATOR, "model"), ""),
     ):
         x = free_motion(config, {}, (0.02, 0.0), 500.0, 1500) + 2e-5 * rng.standard_normal(1500)
-        table = np.column_stack([np.arange(1500) / 500.0, 1e3 * x])
-        np.savetxt(tmp_path / f"{name}.csv", table, "%.12g", ",", header="t,x", comments="")
-        text += TEST.format(name) + more
-    (tmp_path / "measured.toml").write_text(text)
-    measurement = read(tmp_path / "measured.toml")
+        tests[name] = (np.arange(1500) / 500.0, 1e3 * x), TRANSIENT + more
+    measurement = read(saved(tmp_path, OSCILLATOR, HEAD + PLACE, "t,x", tests))
     data = transient_data(measurement)
     point = base_fit(Search.of(data, [])).base.fit.point
     for test in range(data.tests):

@@ -95,9 +95,9 @@ def print_warnings(measurement: "Measurement") -> None:
 
 def _transient_rows(measurement: "Measurement") -> list[tuple[str, ...]]:
     """What is compared of each free motion."""
-    from wedgesweep.diagnose.transient.from_measurement import transient_data
+    from wedgesweep.diagnose.transient.from_measurement import recorded_windows
 
-    windows = transient_data(measurement).windows
+    windows = recorded_windows(measurement).windows
     rows: list[tuple[str, ...]] = []
     for number, test in enumerate(measurement.tests):
         own = [each for each in windows if each.number == number]

@@ -16,6 +16,7 @@ from wedgesweep.diagnose.fit_data import FitData
 from wedgesweep.diagnose.ladder import (
     FORWARD,
     RECORD_BY_RECORD,
+    REFINED,
     ByRecord,
     Level,
     forward_selection,
@@ -29,7 +30,7 @@ from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.next_test.recommend import NextTest, recommend
 from wedgesweep.diagnose.profile_likelihood import profile_likelihood
 from wedgesweep.diagnose.score_test import Score
-from wedgesweep.diagnose.search import Explained, Search, base_fit, quiet, single_fits
+from wedgesweep.diagnose.search import LEADING, Explained, Search, base_fit, quiet, single_fits
 from wedgesweep.diagnose.stages import PAIRS, REFINEMENT, taken
 from wedgesweep.diagnose.steady.from_measurement import harmonic_data
 from wedgesweep.diagnose.transient.from_measurement import transient_data
@@ -42,10 +43,6 @@ from wedgesweep.measured import Measurement
 from wedgesweep.measured.declarations import LOOP, NORMAL_FORCE, STEADY, TRANSIENT
 
 log = logging.getLogger(__name__)
-# Explanations that a next test should separate where the verdict abstains.
-COMPARED = 6
-# Explanations are close if their penalised chi-squared is within FOLLOWED_GAPS gaps of a tie of the best.
-FOLLOWED_GAPS = 5.0
 # Verdicts that name no cause; further effects and an empirical force are tried after them.
 ABSTAINING = (verdict.NONE, verdict.INSUFFICIENT)
 # How the tests of each kind become data of a fit.
@@ -335,7 +332,7 @@ def _scored(course: Course) -> Diagnosis:
 
 def _with_next_test(course: Course) -> Diagnosis:
     found = course.found
-    fits = _undecided(found.finding, found.explanations, found.thresholds)
+    fits = _undecided(found.finding, found.explanations)
     return replace(found, next_test=recommend(fits))
 
 
@@ -387,7 +384,7 @@ def refit_cause(
     explanation becomes the best one after the tight fit, it is fitted tightly as well.
     """
     if finding.best is not None:
-        found = best_of_each([*_continued(search, found, thresholds), *found], penalised)
+        found = best_of_each([*_continued(search, found), *found], penalised)
         finding = verdict.decide(base, found, thresholds)
     done: list[Explanation] = []
     while finding.best is not None and not any(finding.best is each for each in done):
@@ -402,15 +399,14 @@ def refit_cause(
     return finding, found
 
 
-def _continued(search: Search, found: Sequence[Explanation], thresholds: Thresholds) -> list[Explanation]:
-    """The best explanation and those close to it, followed further where their fits had not converged."""
-    limit = min(map(penalised, found)) + FOLLOWED_GAPS * thresholds.gap
-    waiting = [each for each in found if penalised(each) < limit and not each.fit.converged]
+def _continued(search: Search, found: Sequence[Explanation]) -> list[Explanation]:
+    """The leading explanations, followed further where their fits had not converged."""
+    waiting = [each for each in sorted(found, key=penalised)[:LEADING] if not each.fit.converged]
     return search.each(lambda each: Explanation(minimise(each.fit.model, each.fit.evaluation)), waiting)
 
 
-def _undecided(finding: Finding, explanations: Sequence[Explanation], thresholds: Thresholds) -> list[Fit]:
-    """Fits that a next test should separate, at most COMPARED of them without a cause.
+def _undecided(finding: Finding, explanations: Sequence[Explanation]) -> list[Fit]:
+    """Fits that a next test should separate, at most REFINED of them without a cause.
 
     These are a cause and its rivals. Without a cause they are the adequate explanations or, if fewer than two
     are adequate, the best ones.
@@ -420,8 +416,8 @@ def _undecided(finding: Finding, explanations: Sequence[Explanation], thresholds
     if finding.verdict != verdict.INSUFFICIENT:
         return []
     adequate = finding.alternatives
-    closest = adequate if len(adequate) > 1 else verdict.ranked(explanations, thresholds.gap)
-    return [each.fit for each in closest[:COMPARED]]
+    closest = adequate if len(adequate) > 1 else verdict.ranked(explanations)
+    return [each.fit for each in closest[:REFINED]]
 
 
 # Steps of a diagnosis after the fit of the base model, in their order; any of them may fail or be cut off.

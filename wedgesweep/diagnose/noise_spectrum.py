@@ -58,6 +58,11 @@ class NoiseSpectrum:
         own = self.red * _shape(self.pole, frequency) + self.white
         return np.maximum.reduce([own, *(each(frequency) for each in self.likewise)])
 
+    def amplified(self, factor: float) -> "NoiseSpectrum":
+        """Noise whose samples are larger by a factor."""
+        likewise = tuple(each.amplified(factor) for each in self.likewise)
+        return replace(self, red=factor**2 * self.red, white=factor**2 * self.white, likewise=likewise)
+
     def up_to(self, highest: float) -> "NoiseSpectrum":
         """The same noise in a record whose motion stands out up to a frequency (rad a sample)."""
         return replace(self, highest=highest)

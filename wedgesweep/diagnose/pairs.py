@@ -18,6 +18,7 @@ from wedgesweep.diagnose.explanation import Explanation, best_of_each, penalised
 from wedgesweep.diagnose.least_squares import minimise, subset_fit
 from wedgesweep.diagnose.model import ROUGH, Fit, unfitted
 from wedgesweep.diagnose.search import LEADING, Round, Scans, Search
+from wedgesweep.diagnose.work import SLIGHT
 from wedgesweep.effects import EFFECTS, go_together
 
 # Starting points of the second effect.
@@ -29,8 +30,6 @@ ROUNDS = (Round(None, 1), Round(40, 2), Round(40, 5))
 BEHIND, SEVERAL = 5.0, 4
 # Tests on which pairs are fitted first.
 SUBSET = 6
-# Squared change of the whitened responses above which it is more than numerical noise.
-SEEN = 4.0
 # Range of the factor by which changes of the second effect may be scaled where its best start is looked for.
 SCALES = (0.1, 2.0)
 # Name by which a spent budget tells what it left out.
@@ -117,7 +116,7 @@ def single_scan(base: Fit, fit: Fit, scan: Sequence[Evaluation]) -> SingleScan:
     evaluations = [each for each in (*scan, fit.evaluation) if each.found]
     changes = np.array([(base.evaluation.residual - each.residual).ravel() for each in evaluations])
     x = np.array([each.point.x[: fit.model.size] for each in evaluations])
-    seen = np.array([change @ change > SEEN for change in changes], dtype=bool)
+    seen = np.array([change @ change > SLIGHT for change in changes], dtype=bool)
     if not seen.any():
         return SingleScan(fit, _worst_tests(fit), x, np.zeros_like(changes))
     return SingleScan(fit, _worst_tests(fit), x[seen], changes[seen])

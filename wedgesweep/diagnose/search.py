@@ -38,8 +38,6 @@ SCHEDULE = (Round(4, 3), Round(2, 4))
 SHORT_SCHEDULE = (Round(1, 3),)
 # Rounds from the starting points of the base model.
 BASE_SCHEDULE = (Round(None, 4), Round(3, 6))
-# An effect is dropped after the first round if its misfit is this many times the base model's.
-CUT_OFF = 100.0
 # Number of best single effects, of best pairs and of best explanations that are looked at again.
 LEADING = 8
 # Work (see work.py) that a search may spend for each test, the least number of tests that it counts, and the
@@ -299,7 +297,7 @@ def single_fit(search: Search, effect: str, base: Fit) -> SingleFit:
         if implausible:
             evaluations = evaluations + beside_stated(model, fresh)
     schedule = SHORT_SCHEDULE if base.p >= POSSIBLE else SCHEDULE
-    fit = best_of(model, evaluations, schedule, CUT_OFF * base.chi2)
+    fit = best_of(model, evaluations, schedule)
     if _brings_alignment(data, effect):
         fit = _aligned(fit)
     return SingleFit(Explanation(fit), scan, fit.model.data)
@@ -314,43 +312,26 @@ def _with_own_numbers(model: Model, start: Evaluation) -> Evaluation:
     return minimise(model.holding(0, start.point.x[0]), start, 1).evaluation
 
 
-def best_of(
-    model: Model,
-    evaluations: Sequence[Evaluation],
-    schedule: Sequence[Round] = SCHEDULE,
-    limit: float = np.inf,
-) -> Fit:
+def best_of(model: Model, evaluations: Sequence[Evaluation], schedule: Sequence[Round] = SCHEDULE) -> Fit:
     """Fit from several evaluations by successive halving; the best fit is continued to its minimum.
 
-    Parameters
-    ----------
-    model : Model
-        The model to fit.
-    evaluations : sequence of Evaluation
-        Where fits begin; their simulations may have a rougher tolerance than the model's.
-    schedule : sequence of Round
-        Rounds, into each of which fewer fits enter.
-    limit : float
-        The search ends after a round whose best fit has a larger chi-squared than this.
+    Fewer fits enter each round. Simulations of the evaluations may have a rougher tolerance than the model's.
     """
     starts = [evaluation.point for evaluation in _leading(evaluations, schedule[0].entering)]
-    return _halved(model, model.evaluate_all(starts), schedule, limit)
+    return _halved(model, model.evaluate_all(starts), schedule)
 
 
 def _halved(
     model: Model,
     evaluations: Sequence[Evaluation],
     schedule: Sequence[Round],
-    limit: float = np.inf,
     each: Callable[..., Iterable[Fit]] = map,
 ) -> Fit:
     """As ``best_of`` from evaluations by the model itself; ``each`` maps a function, perhaps in threads."""
     for entering, iterations in schedule:
         fits = list(each(partial(minimise, model, iterations=iterations), _leading(evaluations, entering)))
         evaluations = [fit.evaluation for fit in fits]
-        best = min(fits, key=_chi2)
-        if best.chi2 > limit:
-            return best
+    best = min(fits, key=_chi2)
     return best if best.converged else minimise(model, best.evaluation)
 
 

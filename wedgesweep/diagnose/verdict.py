@@ -49,10 +49,9 @@ CLEAR, MOST_LEFT, MOST_NAMED = 2.3, 0.2, 2
 class Thresholds:
     """What a verdict depends on beside the fits; --calibrate replaces them by its own.
 
-    ``gap``: see GAP. ``strong``: see STRONG. ``least_gain``: what a cause must take off the penalised misfit.
+    ``strong``: see STRONG. ``least_gain``: what a cause must take off the penalised misfit.
     """
 
-    gap: float = GAP
     strong: float = STRONG
     least_gain: float = 0.0
 
@@ -133,13 +132,13 @@ def none_adequate(found: Sequence[Explanation]) -> bool:
     return best is not None and best.p_value < ADEQUATE
 
 
-def ranked(explanations: Sequence[Explanation], gap: float = GAP) -> list[Explanation]:
-    """Eligible explanations, best first, without those that beat a part of them by less than the gap."""
+def ranked(explanations: Sequence[Explanation]) -> list[Explanation]:
+    """Eligible explanations, best first, without those that beat a part of them by less than GAP."""
     allowed = sorted(filter(eligible, explanations), key=penalised)
     return [
         each
         for each in allowed
-        if not any(_is_part(other, each) and each.penalised >= other.penalised - gap for other in allowed)
+        if not any(_is_part(other, each) and each.penalised >= other.penalised - GAP for other in allowed)
     ]
 
 
@@ -160,7 +159,7 @@ def decide(base: Explanation, explanations: Sequence[Explanation], thresholds: T
     thresholds : Thresholds
         The default ones, or those of a calibration.
     """
-    order = ranked(explanations, thresholds.gap)
+    order = ranked(explanations)
     better = [each for each in order if each.penalised < base.penalised - thresholds.least_gain]
     if not better:
         return _nothing_better(base, order)
@@ -205,7 +204,7 @@ def _weigh(
     # With a weak excess, noise decides in part which tests hold most of it: then p says less.
     if p < POSSIBLE and base.fit.excess >= STRONG and not met:
         return Finding(_abstention(base), against, best, (), numbers)
-    near = [each for each in order if each.penalised - best.penalised < thresholds.gap and each is not best]
+    near = [each for each in order if each.penalised - best.penalised < GAP and each is not best]
     rivals = tuple(filter(_possible, near))
     alternatives = _adequate_alternatives(order, best)
     if len(best.effects) > 1 and len(alternatives) >= MOST_TIED:

@@ -9,7 +9,7 @@ import threading
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from math import inf, isfinite
+from math import isfinite
 from typing import Any, Generic, NamedTuple, Protocol, TypeVar
 
 # A fit is better if it takes this much off chi-squared.
@@ -21,9 +21,6 @@ class Best(NamedTuple):
 
     effects: tuple[str, ...]
     misfit: float
-
-
-NO_BEST = Best((), inf)
 
 
 class HasBest(Protocol):

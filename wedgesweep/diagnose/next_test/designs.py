@@ -12,6 +12,8 @@ from wedgesweep.diagnose.fit_data import FitData
 from wedgesweep.diagnose.jacobian import accurate_jacobian
 from wedgesweep.diagnose.model import Fit
 
+# Sizes of tests over what was measured.
+SIZES = np.array([0.35, 0.5, 0.7, 1.0, 1.4, 2.0, 2.8])
 # Least share of the tests on offer that an explanation must predict; at the others its wedge locks.
 PREDICTED = 0.5
 # Largest standard deviation of a parameter, in its scales.

@@ -10,15 +10,13 @@ from wedgesweep.diagnose.fit_parameters import Values
 from wedgesweep.diagnose.loop.loop_data import LoopData
 from wedgesweep.diagnose.loop.recording import Recording, at_rest, moving_mass
 from wedgesweep.diagnose.model import Fit
-from wedgesweep.diagnose.next_test.designs import Design
+from wedgesweep.diagnose.next_test.designs import SIZES, Design
 from wedgesweep.diagnose.next_test.sensors import Sensors
 from wedgesweep.diagnose.noise_spectrum import NoiseSpectrum
 from wedgesweep.diagnose.smoothing import LowPass, Motion, highest_cutoff, noise_of_motion
 from wedgesweep.measured.declarations import LOOP
 
-# Amplitudes over the largest displacement measured; frequencies over the measured one or, where no loop was
-# measured, over the natural one.
-SIZES = np.array([0.35, 0.5, 0.7, 1.0, 1.4, 2.0])
+# Frequencies over the measured one or, where no loop was measured, over the natural one.
 FREQUENCIES, OF_NATURAL = np.array([0.25, 0.5, 1.0, 2.0, 4.0]), np.array([0.1, 0.2, 0.4, 0.8])
 # Highest frequency over the cut-off.
 HIGHEST = 0.1

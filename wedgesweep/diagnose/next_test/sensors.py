@@ -1,7 +1,6 @@
 """What the tests at hand show of tests to come: noise of the sensors, sampling, size of the motion."""
 
 from collections.abc import Callable
-from dataclasses import replace
 from typing import NamedTuple, TypeVar
 
 import numpy as np
@@ -50,18 +49,12 @@ class Sensors(NamedTuple):
         return 1.0 / self.model.natural_units(self.travel).time
 
 
-def amplified(noise: NoiseSpectrum, factor: float) -> NoiseSpectrum:
-    """Spectrum of noise whose samples are larger by a factor."""
-    likewise = tuple(amplified(each, factor) for each in noise.likewise)
-    return replace(noise, red=factor**2 * noise.red, white=factor**2 * noise.white, likewise=likewise)
-
-
 def beside_signal(noise: NoiseSpectrum, rms: float, measured: float) -> NoiseSpectrum:
     """The noise beside a signal of some ``rms``, if it was measured beside one of rms ``measured``.
 
     Larger signals take sensors of a larger range, whose noise is larger in proportion.
     """
-    return amplified(noise, max(1.0, rms / max(measured, 1e-300)))
+    return noise.amplified(max(1.0, rms / max(measured, 1e-300)))
 
 
 def median_test(tests: tuple[Each, ...], share: Callable[[Each], float]) -> Each:

@@ -1,15 +1,16 @@
 """Releases from a displacement, and sine-sweeps of the input, to choose a next test from."""
 
 from dataclasses import replace
-from math import ceil, pi
+from math import ceil, pi, sqrt
 
 import numpy as np
 
 from wedgesweep.diagnose.evaluation import Point
 from wedgesweep.diagnose.model import Fit
-from wedgesweep.diagnose.next_test.designs import Design
+from wedgesweep.diagnose.next_test.designs import SIZES, Design
 from wedgesweep.diagnose.next_test.sensors import Sensors, beside_signal
-from wedgesweep.diagnose.transient.cutting import FEWEST_COMPARED, HARMONICS
+from wedgesweep.diagnose.noise_spectrum import NoiseSpectrum
+from wedgesweep.diagnose.transient.cutting import FEWEST_COMPARED, HARMONICS, WINDOW
 from wedgesweep.diagnose.transient.input_noise import InputNoise
 from wedgesweep.diagnose.transient.recorded_input import no_input
 from wedgesweep.diagnose.transient.transient_data import RELEASE, SWEEP, TransientData
@@ -17,12 +18,10 @@ from wedgesweep.diagnose.transient.window import Grid, RecordWindow
 from wedgesweep.measured.declarations import TRANSIENT
 from wedgesweep.sampled_input import from_samples
 
-# Sizes of the tests over what was measured.
-SIZES = np.array([0.35, 0.5, 0.7, 1.0, 1.4, 2.0, 2.8])
 # Amplitude of a sweep over the travel where no input was recorded.
 GENTLE = 0.1
-# Length of a release in natural periods; of a sweep, and its ends over the natural frequency.
-RELEASED, SWEPT, LOW, HIGH = 10.0, 20.0, 0.5, 2.0
+# Length of a sweep in natural periods, and its ends over the natural frequency.
+SWEPT, LOW, HIGH = 20.0, 0.5, 2.0
 # Samples of a sweep in a period of its highest frequency, at least.
 FINE = 32
 
@@ -31,7 +30,7 @@ def releases(best: Fit, known: Sensors, measured: TransientData | None = None) -
     """Releases at rest from displacements of several sizes; None without a spring, where the mass stays."""
     if known.model.system == "oscillator" and known.model.oscillator["spring"] == 0.0:
         return None
-    starts, duration = SIZES * known.travel, RELEASED * 2.0 * pi / known.omega
+    starts, duration = SIZES * known.travel, WINDOW * 2.0 * pi / known.omega
     tests = tuple(_window(known, start, duration) for start in starts)
     numbers = [{"start_mm": 1e3 * start, "duration_s": duration} for start in starts]
     return Design(TRANSIENT, RELEASE, _data(best, known, tests), numbers, (SIZES.size, 1))
@@ -51,8 +50,8 @@ def sweeps(best: Fit, known: Sensors, measured: TransientData | None = None) -> 
     tests = []
     for size in sizes:
         given = from_samples(size * shape, duration / count, quantity, fastest=2.0 * pi * high)
-        power = np.full(2, (known.share * size) ** 2 / 2.0)
-        noise = InputNoise(power, 0, 2.0 * pi * high / known.rate, (0.0,) * len(known.spectra))
+        white = NoiseSpectrum(0.0, 0.0, (known.share * size) ** 2 / 2.0)
+        noise = InputNoise(white, 0, 2.0 * pi * high / known.rate, (0.0,) * len(known.spectra))
         tests.append(
             replace(_window(known, known.travel, duration), input=given, input_noise=noise, guess=(0.0, 0.0))
         )
@@ -77,9 +76,8 @@ def _window(known: Sensors, start: float, duration: float) -> RecordWindow:
         channels=np.zeros((len(known.spectra), count)),
         rms=known.rms,
         spectra=known.spectra,
-        passed_on=np.zeros((len(known.spectra), 2)),
         coefficients=min(max(ceil(highest * count / pi), FEWEST_COMPARED), count),
-        grid=Grid(0, count, known.omega, 0),
+        grid=Grid(0, count, known.omega),
         input=no_input(count / known.rate),
         input_noise=None,
         length=start,
@@ -106,7 +104,8 @@ def _filled(known: Sensors, own: RecordWindow, response: np.ndarray) -> RecordWi
     shape = len(own.channels), own.coefficients
     channels = own.in_time(response[: shape[0] * shape[1]].reshape(shape))
     rms = channels.std(axis=1)
-    spectra = tuple(beside_signal(*each) for each in zip(own.spectra, rms, known.rms, strict=True))
     # A recorded input has noise as well: as large a share as the response has.
-    passed_on = np.array([each.std**2 for each in spectra])[:, None] * np.full((1, 2), float(own.driven))
-    return replace(own, channels=channels, rms=rms, spectra=spectra, passed_on=passed_on)
+    more = sqrt(2.0) if own.driven else 1.0
+    both = zip(own.spectra, rms, known.rms, strict=True)
+    spectra = tuple(beside_signal(*each).amplified(more) for each in both)
+    return replace(own, channels=channels, rms=rms, spectra=spectra)

@@ -13,18 +13,15 @@ from wedgesweep.config import Config
 from wedgesweep.diagnose.cross_validation import Gain
 from wedgesweep.diagnose.diagnosis import Diagnosis, excluded_effects
 from wedgesweep.diagnose.explanation import ADEQUATE, POSSIBLE, Explanation, parameter_penalty
-from wedgesweep.diagnose.ladder import ByRecord, Level, Rated
+from wedgesweep.diagnose.ladder import REFINED, ByRecord, Level, Rated
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.next_test.recommend import SEPARATED, NextTest
 from wedgesweep.diagnose.result import missing_force
 from wedgesweep.diagnose.result.estimates import finite, parameters, uncertain, widen
-from wedgesweep.diagnose.verdict import LARGER, Finding, p_where_it_shows
+from wedgesweep.diagnose.verdict import GAP, LARGER, Finding, p_where_it_shows
 from wedgesweep.diagnose.work import SLIGHT, OutOfTime, summary
 from wedgesweep.diagnosis_result import FAILED, NO_BETTER
 from wedgesweep.effects import EFFECTS
-
-# Rivals of each size on the accuracy ladder.
-RIVALS = 5
 
 
 def document(found: Diagnosis) -> dict[str, Any]:
@@ -207,7 +204,7 @@ def _level(level: Level) -> dict[str, Any]:
         **_rated(level.best),
         "accuracy_held_out": level.best.held_out,
         "distinct": level.distinct,
-        "rivals": [_rated(each) for each in level.rivals[:RIVALS]],
+        "rivals": [_rated(each) for each in level.rivals[: REFINED - 1]],
     }
 
 
@@ -229,7 +226,7 @@ def _by_name(numbers: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
 def _method(found: Diagnosis) -> dict[str, Any]:
     return {
         "penalty_per_parameter": parameter_penalty(found.data),
-        "gap": found.thresholds.gap,
+        "gap": GAP,
         "enough_distance": SEPARATED,
         "strong_excess": found.thresholds.strong,
         "adequate_p": ADEQUATE,

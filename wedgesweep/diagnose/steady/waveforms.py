@@ -9,6 +9,7 @@ from scipy.optimize import root_scalar
 from wedgesweep.compiled import compiled
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.steady.column_load import CHANNEL
+from wedgesweep.diagnose.steady.whitened import PHASES
 from wedgesweep.effects import EFFECTS, acting
 from wedgesweep.excitation import has_series
 from wedgesweep.hybrid.interface import cycle, initial_mode, rate
@@ -17,7 +18,6 @@ from wedgesweep.systems import compact, driven_mass, has_own_mechanics, is_oscil
 if TYPE_CHECKING:
     from wedgesweep.diagnose.steady.harmonic_data import HarmonicData
 
-PHASES = 256
 # A harmonic counts by the share of its square that exceeds this many times its noise.
 ABOVE_NOISE = 4.0
 # First guess at the mean of a motion, over its peak-to-peak.

@@ -17,8 +17,8 @@ from wedgesweep.diagnose.steady.column_load import ColumnLoad
 from wedgesweep.diagnose.steady.simulation import LONGEST_SIMULATED, ToneTiming
 from wedgesweep.diagnose.steady.spectra import SIMULATED, Spectrum
 
-# Number of start phases that are tried, and of Newton steps from the best one at most; in rad their largest
-# length and a negligible one.
+# Number of phases of a period at which signals are drawn and start phases are tried, and of Newton steps from
+# the best one at most; in rad their largest length and a negligible one.
 PHASES, NEWTON_STEPS, NEWTON_LENGTH, NEGLIGIBLE = 256, 12, 0.05, 1e-7
 # Least variance of a combination of residuals, over that of the responses' own noise: sampling errors of the
 # noise that channels and input share may make it smaller, or negative.

@@ -16,6 +16,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from wedgesweep.diagnose.noise_spectrum import NoiseBins, NoiseSpectrum
+
 # Number of lowest frequencies that are left out: the window leaks a mean or a drift into them.
 LOWEST = 2
 # Least amplitude, over the largest one, of bins from which gain and lag are estimated.
@@ -32,6 +34,14 @@ class Difference(NamedTuple):
     frequency: np.ndarray
     power: np.ndarray
     share: np.ndarray
+
+    def of_higher(self, lower: NoiseSpectrum) -> NoiseBins:
+        """Bins of noise of the higher derivative, where that of the lower one is known."""
+        return NoiseBins(self.frequency, self.power, self.share * lower(self.frequency))
+
+    def of_lower(self, higher: NoiseSpectrum) -> NoiseBins:
+        """Bins of noise of the lower derivative, where that of the higher one is known."""
+        return NoiseBins(self.frequency, self.power / self.share, higher(self.frequency) / self.share)
 
 
 class _Sums(NamedTuple):

@@ -13,11 +13,9 @@ from wedgesweep.diagnose.transient.recorded_input import RecordedInput, no_input
 from wedgesweep.diagnose.transient.window import Grid, RecordWindow
 from wedgesweep.errors import InputError
 
-# Natural periods of a window, and of what is simulated before it so that the start of bristles is forgotten.
-WINDOW, LEAD = 10.0, 1.0
-# The lead under an input, which keeps lifting wedges off: they forget their start later. Of its periods the
-# last LEAD ones count for the noise of the input.
-DRIVEN_LEAD = 1.5
+# Natural periods of a window, and of what is simulated before it so that the start of bristles is forgotten;
+# the latter under an input, which keeps lifting wedges off: they forget their start later.
+WINDOW, LEAD, DRIVEN_LEAD = 10.0, 1.0, 1.5
 # Share of a record under an input that is simulated before its first window, at most.
 LEAD_SHARE = 0.125
 # A single record is cut into at least FEWEST windows, if each has SHORTEST natural periods. Friction ends
@@ -106,7 +104,7 @@ def windows(record: Recorded, model: Config, law: str, fewest: int = 1) -> list[
     smooth = LowPass(min(top / (2.0 * pi), HIGHEST), 1.0)(displacement) - rest
     slope = np.gradient(smooth) * rate
     parts = cuts(record.channels.shape[1], period, given.settling if given else 0, fewest)
-    passed_on, input_noise = _passed_on(record), given.input_noise(record.shares) if given else None
+    input_noise = given.input_noise(record.shares) if given else None
     found = []
     for place, (first, inside, lead) in enumerate(parts, 1):
         start, end = first - lead, first + inside
@@ -121,9 +119,8 @@ def windows(record: Recorded, model: Config, law: str, fewest: int = 1) -> list[
                 channels=record.channels[:, first:end],
                 rms=record.channels.std(axis=1),
                 spectra=tuple(record.spectra),
-                passed_on=passed_on,
                 coefficients=min(max(ceil(top * inside / pi), FEWEST_COMPARED), inside),
-                grid=Grid(lead, inside, 2.0 * pi * rate / period, min(lead, ceil(LEAD * period))),
+                grid=Grid(lead, inside, 2.0 * pi * rate / period),
                 input=starting_at(given.acting, start / rate) if given else no_input((end - start) / rate),
                 input_noise=input_noise,
                 length=max(float(np.abs(displacement[start:end] - rest).max()), SMALL * length),
@@ -156,10 +153,3 @@ def _period(record: Recorded, model: Config) -> float:
     """Natural period of the model in samples; that of a mass without a spring is the whole record."""
     record_omega = 2.0 * pi * record.rate / record.channels.shape[1]
     return 2.0 * pi * model.natural_units(_extent(record.channels[0])[1], record_omega).time * record.rate
-
-
-def _passed_on(record: Recorded) -> np.ndarray:
-    """Power of the input's noise in each channel, (C, f)."""
-    if record.input is None:
-        return np.zeros((len(record.channels), 2))
-    return np.array([record.input.passed_on(each) for each in record.channels])

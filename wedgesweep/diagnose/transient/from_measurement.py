@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from wedgesweep.diagnose.evaluation import Point, Scenario
 from wedgesweep.diagnose.noise_bins import PARTS
 from wedgesweep.diagnose.noise_spectrum import NoiseSpectrum
 from wedgesweep.diagnose.transient.cutting import FEWEST, Recorded, windows
@@ -18,7 +19,13 @@ MOST_WINDOWS = 40
 
 
 def transient_data(measurement: Measurement) -> TransientData:
-    """Windows of all tests."""
+    """Windows of all tests, with the noise of their inputs as the base model as stated passes it on."""
+    data = recorded_windows(measurement)
+    return data.renewed(Scenario({}, Point(np.zeros(0), *data.start())))
+
+
+def recorded_windows(measurement: Measurement) -> TransientData:
+    """Windows of all tests, without what noise of their inputs adds."""
     tests = measurement.tests
     channels = [_channels(measurement, test) for test in tests]
     spectra = _noise(measurement, channels)

@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.fft import dct
 
+from wedgesweep.diagnose.noise_spectrum import NoiseSpectrum
 from wedgesweep.diagnose.sampled_data import LARGEST_BLOCK, Decorrelation, decorrelation
 from wedgesweep.diagnose.smoothing import derivative
 from wedgesweep.sampled_input import SampledInput, polynomials
@@ -24,53 +25,49 @@ BEYOND = 3
 class InputNoise(NamedTuple):
     """Noise of a recorded input.
 
-    ``power`` (f,): of a sample by frequency, from 0 to half the sampling rate; ``integrated``: how often what
-    was recorded is integrated to what acts; ``cutoff`` (rad a sample): highest frequency that acts;
-    ``shares`` (C,): of the base's displacement in each channel, which was converted with it.
+    ``recorded``: of a sample; ``integrated``: how often what was recorded is integrated to what acts;
+    ``cutoff`` (rad a sample): highest frequency that acts; ``shares`` (C,): of the base's displacement in
+    each channel, which was converted with it.
     """
 
-    power: np.ndarray
+    recorded: NoiseSpectrum
     integrated: int
     cutoff: float
     shares: tuple[float, ...]
 
     def of_acting(self, frequency: np.ndarray, step: float) -> np.ndarray:
         """Variance (m^2, or N^2 of a force) of a cosine of what acts, at frequencies in rad a sample."""
-        recorded = np.interp(frequency, np.linspace(0.0, pi, self.power.size), self.power)
-        return recorded / (frequency / step) ** (2 * self.integrated)
+        return self.recorded(frequency) / (frequency / step) ** (2 * self.integrated)
 
 
 class Cosines(NamedTuple):
     """Cosines by which the input of a window may be wrong.
 
     ``size`` (k,): standard deviation of each, in the orthonormal basis of n ``samples``, ``step`` (s) apart;
-    ``frequency`` (k,) in rad a sample; ``first``: index of the first of these among the simulated samples,
-    before which the cosines go on.
+    ``frequency`` (k,) in rad a sample.
     """
 
     size: np.ndarray
     frequency: np.ndarray
     samples: int
     step: float
-    first: int
 
     def at(self, times: np.ndarray) -> np.ndarray:
         """Their values (k, t) at times (s) from the first simulated sample."""
-        angles = np.multiply.outer(self.frequency, times / self.step - self.first + 0.5)
+        angles = np.multiply.outer(self.frequency, times / self.step + 0.5)
         return self.size[:, None] * sqrt(2.0 / self.samples) * np.cos(angles)
 
 
-def cosines(noise: InputNoise, samples: int, step: float, highest: float, first: int = 0) -> Cosines:
+def cosines(noise: InputNoise, samples: int, step: float, highest: float) -> Cosines:
     """The cosines up to a frequency (rad a sample)."""
     count = int(min(noise.cutoff, highest) * samples / pi)
     frequency = pi * np.arange(1, max(count, 1) + 1) / samples
-    return Cosines(np.sqrt(noise.of_acting(frequency, step)), frequency, samples, step, first)
+    return Cosines(np.sqrt(noise.of_acting(frequency, step)), frequency, samples, step)
 
 
 def disturbed(given: SampledInput, parts: Cosines) -> list[SampledInput]:
     """The input with each of the cosines added, then with each of them taken away."""
-    span = (parts.first + parts.samples) * parts.step
-    first, last = (np.array([0.0, span]) - given.begin) / given.step
+    first, last = (np.array([0.0, parts.samples * parts.step]) - given.begin) / given.step
     begin = min(max(int(first) - BEYOND, 0), len(given.coefficients) - 1)
     end = min(int(last) + BEYOND + 1, len(given.coefficients))
     own = given.coefficients[begin : max(end, begin + 1)]
@@ -89,7 +86,7 @@ def converted(parts: Cosines, shares: Sequence[float], orders: Sequence[int], le
 
     ``orders`` (C,): the derivative of the displacement that each channel is.
     """
-    wrong = parts.at(parts.step * np.arange(parts.first + parts.samples))
+    wrong = parts.at(parts.step * np.arange(parts.samples))
     motion = wrong, *(derivative(wrong, 1.0 / parts.step, order) for order in (1, 2))
     pairs = zip(shares, orders, strict=True)
     return np.stack([share * motion[order] for share, order in pairs], axis=1)[..., lead:]

@@ -9,7 +9,6 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
-from typing import NamedTuple
 
 import numpy as np
 
@@ -47,21 +46,6 @@ Key = tuple[int, int]
 Spectra = dict[Key, NoiseSpectrum]
 
 
-class Shared(NamedTuple):
-    """The difference of two channels in a test, which are derivatives of ``lower`` and ``higher`` order."""
-
-    lower: int
-    higher: int
-    difference: Difference
-
-    def bins_of(self, order: int, other: NoiseSpectrum) -> NoiseBins:
-        """Bins of noise of the channel of an order; ``other``: noise of the other channel, which is known."""
-        frequency, power, share = self.difference
-        if order == self.higher:
-            return NoiseBins(frequency, power, share * other(frequency))
-        return NoiseBins(frequency, power / share, other(frequency) / share)
-
-
 @dataclass(frozen=True, eq=False)
 class NoiseEvidence:
     """What tests of one sampling rate (Hz) show of the noise of their channels.
@@ -85,9 +69,9 @@ class NoiseEvidence:
         return {key: bins for key, bins in found.items() if bins is not None}
 
     @cached_property
-    def shared(self) -> dict[int, list[Shared]]:
-        """Differences of channels that follow one another, by test."""
-        found: dict[int, list[Shared]] = {t: [] for t in self.tests}
+    def shared(self) -> dict[int, list[tuple[int, int, Difference]]]:
+        """Differences of channels that follow one another, with the orders of both, by test."""
+        found: dict[int, list[tuple[int, int, Difference]]] = {t: [] for t in self.tests}
         orders = sorted(self.of)
         for lower, higher in pairwise(orders):
             both = [t for t, its in self.tests.items() if lower in its and higher in its]
@@ -95,7 +79,7 @@ class NoiseEvidence:
                 continue
             pairs = [(self.tests[t][lower], self.tests[t][higher]) for t in both]
             for t, each in zip(both, differences(pairs, higher - lower, self.rate), strict=True):
-                found[t].append(Shared(lower, higher, each))
+                found[t].append((lower, higher, each))
         return found
 
     def others(self, key: Key, first: float, known: Spectra) -> list[NoiseBins]:
@@ -104,12 +88,13 @@ class NoiseEvidence:
         These are the quiet part of its record, and differences to channels whose noise is ``known``.
         """
         t, order = key
-        found = [self.quiet[key].up_to(first)] if key in self.quiet else []
-        for each in self.shared[t]:
-            other = {each.lower: each.higher, each.higher: each.lower}.get(order)
-            if other is not None and (t, other) in known:
-                found.append(each.bins_of(order, known[t, other]).up_to(first))
-        return found
+        found = [self.quiet[key]] if key in self.quiet else []
+        for lower, higher, each in self.shared[t]:
+            if order == higher and (t, lower) in known:
+                found.append(each.of_higher(known[t, lower]))
+            elif order == lower and (t, higher) in known:
+                found.append(each.of_lower(known[t, higher]))
+        return [each.up_to(first) for each in found]
 
     def fitted(self, own: Mapping[Key, OwnNoise], known: Spectra, choice: Choice) -> Spectra:
         """Noise of one channel in all tests, from its ``own`` bins and from other sources."""

@@ -9,9 +9,8 @@ from scipy import signal
 
 from wedgesweep.diagnose.noise_bins import noise_of_record
 from wedgesweep.diagnose.noise_spectrum import NoiseSpectrum
-from wedgesweep.diagnose.smoothing import derivative
+from wedgesweep.diagnose.smoothing import SETTLING, derivative
 from wedgesweep.diagnose.transient.input_noise import InputNoise
-from wedgesweep.periodogram import power_of
 from wedgesweep.sampled_input import INTEGRATED, SampledInput, from_samples
 
 # Cut-off of the input over the highest frequency that stands out in it: what lies above is noise, whose
@@ -20,13 +19,9 @@ KEPT, ORDER = 1.4, 8
 # Cut-off (cycles a sample) from which on the input is not filtered, and samples that are kept in a period of
 # the cut-off.
 HIGHEST, SAMPLED = 0.4, 8.0
-# Part of a record at either end, in periods of the cut-off, in which the filter has not settled.
-SETTLING = 2.0
 # Largest rms of the input's noise over that of the input: where all that moves the base looks like noise,
 # most of it is not.
 LARGEST_NOISE = 0.05
-# Bins over which spectra of input and response are averaged, as a share of all.
-AVERAGED = 0.01
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,7 +34,9 @@ class RecordedInput:
 
     @cached_property
     def noise(self) -> NoiseSpectrum:
-        return noise_of_record(self.samples)
+        """Noise of the samples, at most LARGEST_NOISE of their rms."""
+        found = noise_of_record(self.samples)
+        return found.amplified(min(LARGEST_NOISE * float(self.samples.std()) / max(found.std, 1e-300), 1.0))
 
     @cached_property
     def size(self) -> float:
@@ -89,27 +86,10 @@ class RecordedInput:
             return derivative(self.displacement, self.rate)
         return self.acting(np.arange(self.samples.size) / self.rate, 2)
 
-    @cached_property
-    def noise_power(self) -> np.ndarray:
-        """Power (f,) of the noise of a sample by frequency, from 0 to half the sampling rate."""
-        given = _power(self.samples)
-        noise = np.minimum(self.noise(np.linspace(0.0, pi, given.size)), given)
-        return noise * min(LARGEST_NOISE**2 * given.sum() / max(noise.sum(), 1e-300), 1.0)
-
     def input_noise(self, shares: tuple[float, ...]) -> InputNoise:
         """The noise as it acts; ``shares`` (C,): of the base's displacement in each channel."""
         cutoff = 2.0 * pi * min(self._cutoff, 0.5)
-        return InputNoise(self.noise_power, INTEGRATED[self.quantity], cutoff, shares)
-
-    def passed_on(self, response: np.ndarray) -> np.ndarray:
-        """Power of the input's noise in a response (n,) by frequency, from 0 to half the sampling rate.
-
-        The rig passes on noise as it passes on the input: by the ratio of the spectra of the two. Where the
-        input does not stand out of its noise, that ratio says nothing.
-        """
-        given, seen = (_power(each) for each in (self.samples, response))
-        noise = np.minimum(self.noise_power, LARGEST_NOISE**2 * given)
-        return seen * noise / np.maximum(given, 1e-300)
+        return InputNoise(self.noise, INTEGRATED[self.quantity], cutoff, shares)
 
 
 def starting_at(given: SampledInput, start: float) -> SampledInput:
@@ -120,10 +100,3 @@ def starting_at(given: SampledInput, start: float) -> SampledInput:
 def no_input(span: float) -> SampledInput:
     """An input that is zero for some time (s)."""
     return from_samples(np.zeros(2), span)
-
-
-def _power(samples: np.ndarray) -> np.ndarray:
-    """Power (n // 2 + 1,) of samples (n,) by frequency, averaged over neighbours."""
-    found = power_of(samples - samples.mean())
-    kernel = np.ones(2 * max(int(AVERAGED * found.size), 3) + 1)
-    return np.convolve(found, kernel, mode="same") / np.convolve(np.ones(found.size), kernel, mode="same")

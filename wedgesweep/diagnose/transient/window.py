@@ -43,14 +43,12 @@ SIMULATION_ERROR = 1e-5
 class Grid(NamedTuple):
     """Samples of a simulation: ``lead`` before a window, ``inside`` it.
 
-    ``omega``: angular natural frequency (rad/s); ``recent``: those of the lead that count for the noise of
-    the input. Before them the motion has forgotten it, or the mass sticks.
+    ``omega``: angular natural frequency (rad/s).
     """
 
     lead: int
     inside: int
     omega: float
-    recent: int
 
     @property
     def samples(self) -> int:
@@ -78,8 +76,6 @@ class RecordWindow:
         motion has died down they are not shares of a creep.
     spectra : tuple of NoiseSpectrum
         Noise of each channel but for what the input's noise adds.
-    passed_on : ndarray, shape (C, f)
-        Power of the input's noise in each channel, by frequency from 0 to half the sampling rate.
     coefficients : int
         Number K of cosine coefficients of a channel that are compared.
     grid : Grid
@@ -103,7 +99,6 @@ class RecordWindow:
     channels: np.ndarray
     rms: np.ndarray
     spectra: tuple[NoiseSpectrum, ...]
-    passed_on: np.ndarray
     coefficients: int
     grid: Grid
     input: SampledInput
@@ -180,26 +175,15 @@ class RecordWindow:
         return pi * np.arange(self.coefficients) / self.channels.shape[1]
 
     @cached_property
-    def _own_variance(self) -> np.ndarray:
-        """Variance (C, K) of each coefficient, without what the input's noise adds."""
+    def noise(self) -> np.ndarray:
+        """Standard deviation (C, K) of each coefficient, without what the input's noise adds."""
         least = SIMULATION_ERROR * self.rms * sqrt(self.spread)
         own = zip(self.spectra, least, strict=True)
         found = np.array([each(self._frequency) + low**2 for each, low in own])
         # The zero of the first channel is fitted; that of an accelerometer beside others is unknown.
         zero = (UNKNOWN_ZERO * self.rms) ** 2 * self.channels.shape[1]
         found[1:, 0] += zero[1:] * (np.array(self.orders[1:]) == ACCELERATION)
-        return found
-
-    @cached_property
-    def by_input(self) -> np.ndarray:
-        """Variance (C, K) that the input's noise adds to each coefficient."""
-        grid = np.linspace(0.0, pi, self.passed_on.shape[1])
-        return np.array([np.interp(self._frequency, grid, each) for each in self.passed_on])
-
-    @cached_property
-    def noise(self) -> np.ndarray:
-        """Standard deviation (C, K) of each coefficient."""
-        return np.sqrt(self._own_variance + self.by_input)
+        return np.sqrt(found)
 
     def decorrelation(
         self, values: Values, start: np.ndarray, gain: float, tolerance: float
@@ -211,16 +195,16 @@ class RecordWindow:
         """
         if self.input_noise is None:
             return ()
-        grid = self.grid
-        highest, noisy = float(self._frequency[-1]), grid.recent + grid.inside
-        parts = cosines(self.input_noise, noisy, self.step, highest, grid.lead - grid.recent)
+        parts = cosines(self.input_noise, self.grid.samples, self.step, float(self._frequency[-1]))
         inputs = disturbed(self.input, parts)
         rows = np.repeat(self.records([values]), len(inputs), axis=0)
         for place, each in enumerate(inputs):
             self.drive(rows[place : place + 1], each, gain)
         above, below = np.split(self.motions(rows, np.repeat(start[None], len(rows), axis=0), tolerance), 2)
-        changes = converted(parts, self.input_noise.shares, self.orders, grid.lead) - 0.5 * (above - below)
-        return decorrelated(self._own_variance, np.nan_to_num(changes))
+        changes = converted(parts, self.input_noise.shares, self.orders, self.grid.lead) - 0.5 * (
+            above - below
+        )
+        return decorrelated(self.noise**2, np.nan_to_num(changes))
 
     def in_time(self, coefficients: np.ndarray) -> np.ndarray:
         """Signals (..., C, n) of coefficients (..., C, K)."""
