@@ -15,7 +15,7 @@ import numpy as np
 from wedgesweep import sampled_input
 from wedgesweep.compiled import contracted, inlined, term
 from wedgesweep.effects import hooks
-from wedgesweep.hybrid.vectors import combination
+from wedgesweep.hybrid.vectors import combination, weighted
 from wedgesweep.sampled_input import is_sampled
 from wedgesweep.traced import traced
 from wedgesweep.trigonometry import cosine, sine
@@ -89,9 +89,9 @@ def is_sine(p):
 
 
 @term("series", off="True")
-def is_sampled_or_sine(p):
-    """Whether the input is not a sum of harmonics."""
-    return p.series.rows > 0 or is_sine(p)
+def is_harmonic(p):
+    """Whether the input is a sum of harmonics, or none."""
+    return p.series.rows == 0
 
 
 @term("input_gain", off="p.input.amplitude")
@@ -178,6 +178,32 @@ def _expanded(sine_part, cosine_part, omega):
     return tuple(terms)
 
 
+@inlined
+def _sine_expanded(t, p):
+    return _expanded(sine(p.input.omega * t), cosine(p.input.omega * t), p.input.omega)
+
+
+@term("series", off="_sine_expanded(t, p)", _sine_expanded=_sine_expanded)
+def _bend_expanded(t, p):
+    """``_bend`` of harmonics from a time on, by powers of time (s)."""
+    first = cosine(p.input.omega * t), sine(p.input.omega * t)
+    turn, total = first, _expanded(0.0, 0.0, p.input.omega)
+    for order in range(1, p.series.count + 1):
+        in_phase, quadrature = _harmonic(order, 2, turn, p)
+        total = weighted(total, 1.0, (1.0,), (_expanded(in_phase, quadrature, order * p.input.omega),))
+        turn = _turned(turn, first)
+    return total
+
+
+@term("series", off="1.0")
+def _largest_bend(p):
+    """A bound of ``_bend`` of harmonics."""
+    total = 0.0
+    for order in range(1, p.series.count + 1):
+        total += order**2 * (p.series.cosine[order - 1] ** 2 + p.series.sine[order - 1] ** 2) ** 0.5
+    return total
+
+
 @term("series", off="p.input.omega")
 def _highest(p):
     """Highest angular frequency (rad/s) of the input, or of the motions that it causes if that is higher."""
@@ -212,10 +238,15 @@ def acceleration(t, p):
 
 @inlined
 def acceleration_expanded(t, p):
-    """Acceleration of a sine from a time on, by powers of time (s), where effects only scale it."""
-    omega = p.input.omega
-    shape = _expanded(sine(omega * t), cosine(omega * t), omega)
-    return combination(-sine_amplitude(p) * omega**2, (1.0,), (shape,))
+    """Acceleration of harmonics from a time on, by powers of time (s), where effects only scale it."""
+    size = hooks.base_acceleration(-p.input.amplitude * p.input.omega**2, t, p)
+    return combination(size, (1.0,), (_bend_expanded(t, p),))
+
+
+@inlined
+def largest_acceleration(p):
+    """A bound (m/s^2) of the same."""
+    return abs(hooks.base_acceleration(p.input.amplitude * p.input.omega**2 * _largest_bend(p), 0.0, p))
 
 
 @inlined

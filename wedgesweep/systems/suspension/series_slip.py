@@ -8,7 +8,7 @@ from math import inf, isfinite, log, pi, sqrt
 from wedgesweep import excitation, friction
 from wedgesweep.compiled import inlined, inner, term
 from wedgesweep.effects import directional_friction, guide_friction, stribeck, travel
-from wedgesweep.hybrid.interface import error_scales, fastest
+from wedgesweep.hybrid.interface import error_scales, fastest, linear
 from wedgesweep.hybrid.polynomials import largest_change, polynomial
 from wedgesweep.hybrid.recorded_step import record_step
 from wedgesweep.hybrid.state import FAILED, NO_EVENT, State
@@ -92,7 +92,7 @@ def _write_equations(y, mode, p, out):
     by_x = _change(at_rest, _at(1.0, 0.0, y, mode, closed, p))
     by_v = _change(at_rest, _at(0.0, 1.0, y, mode, closed, p))
     by_u = _without_contact(UNIT_BASE, closed)
-    most, most_u = _largest_coefficient(y, mode, p), abs(excitation.sine_amplitude(p)) * p.input.omega**2
+    most, most_u = _largest_coefficient(y, mode, p), excitation.largest_acceleration(p)
     # Normal forces times the determinant are linear in all of these: least at a corner.
     for column_mu, bolster_mu in ((most, most), (most, -most), (-most, most), (-most, -most)):
         rest = _normal_forces(at_rest, column_mu, bolster_mu, closed)
@@ -237,7 +237,7 @@ def follow_series(state, stop, p, keeping, recorder, work):
     t, y, mode, last_event, h = state
     period, ends = 2.0 * pi / fastest(p), ends_of_velocity(mode, p)
     equations = equations_of(y, mode, p, work.constants)
-    longest = period / (LEAST_STEPS_RECORDED if keeping else LEAST_STEPS)
+    longest = period / LEAST_STEPS_RECORDED if keeping else 2.0 * pi / (LEAST_STEPS * p.input.omega)
     most_steps = step_limit(work.counts[1], (stop - t) / period)
     while t < stop:
         series = _expanded(t, y, mode, equations, p)
@@ -269,12 +269,12 @@ def _on_ramp(mode):
 
 @inlined
 def has_series(mode, p):
-    """Whether power series follow a mode that slips and is not ``linear``."""
-    if not (p.geometry.linear and excitation.is_sine(p)) or held(mode):
+    """Whether power series follow a mode that slips: not where friction is constant and all is linear."""
+    if not (p.geometry.linear and excitation.is_harmonic(p)) or held(mode):
         return False
-    if mode.column_sign < 0 or mode.bolster_sign < 0:
+    if mode.column_sign < 0 or mode.bolster_sign < 0 or linear(mode, p):
         return False
     falls, exponent = stribeck.acts(p), friction.exponent(p)
     if p.friction.set_valued:
-        return falls and exponent == 0.0
+        return exponent == 0.0
     return _on_ramp(mode) or exponent == 0.0 or (isfinite(exponent) and not falls)

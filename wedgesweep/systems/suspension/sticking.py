@@ -1,7 +1,7 @@
 """Sticking without integration: set-valued friction holds the bolster until the base has accelerated enough.
 
 While only the base moves, the bolster rests between two base accelerations. As long as both normal forces
-stay positive these are known, and so are the times at which a harmonic or a sampled base motion reaches them.
+stay positive these are known, and so are the times at which a base motion reaches them, of harmonics or samples.
 """
 
 from math import asin, ceil, inf, pi
@@ -12,10 +12,13 @@ from wedgesweep.effects import fixture_resonance, input_distortion, states, stra
 from wedgesweep.hybrid.recorder import record_constant
 from wedgesweep.hybrid.state import NO_EVENT, State
 from wedgesweep.systems.suspension.modes import COLUMN, VELOCITY, stuck
+from wedgesweep.systems.suspension.series_events import Ends, first_event
 from wedgesweep.systems.suspension.set_valued import breakaway_input
 from wedgesweep.trigonometry import sine
 
 DOWN, UP = 2 * COLUMN, 2 * COLUMN + 1
+# Error of a series of the base acceleration (m/s^2) over the range in which the bolster rests.
+ERROR = 1e-9
 
 
 @inner
@@ -41,7 +44,7 @@ def carries_load_until_breakaway(y, segment, p):
 
 @inner
 def _breakaway_of_sine(forward, backward, t, stop, p):
-    """Time at which a harmonic base acceleration leaves a range (m/s^2), and the event (NO_EVENT: none)."""
+    """Time at which the acceleration of a sine leaves a range (m/s^2), and the event (NO_EVENT: none)."""
     omega = p.input.omega
     most = excitation.sine_amplitude(p) * omega**2
     upper, lower = -forward / most, -backward / most  # of sin(omega t)
@@ -64,13 +67,32 @@ def _breakaway_of_sine(forward, backward, t, stop, p):
     return moment, UP if rising < falling else DOWN
 
 
+@inner
+def _breakaway_of_harmonics(forward, backward, t, stop, p):
+    """As ``_breakaway_of_sine``, of harmonics: by power series, one after the other."""
+    ends = Ends(forward, UP, backward, DOWN)
+    while t < stop:
+        base = excitation.acceleration_expanded(t, p)
+        longest = min(1.0 / p.input.omega, stop - t)
+        last = (abs(base[-1]) * longest + abs(base[-2])) * longest ** (excitation.TERMS - 2)
+        error = last / (ERROR * (backward - forward))
+        h = longest if error <= 1.0 else longest * error ** (-1.0 / (excitation.TERMS - 2))
+        time, event = first_event(base, h, NO_EVENT, ends, p)
+        if event != NO_EVENT:
+            return t + time, event
+        t = stop if h == stop - t else t + h
+    return stop, NO_EVENT
+
+
 @term(
     "series", off="_breakaway_of_sine(forward, backward, t, stop, p)", _breakaway_of_sine=_breakaway_of_sine
 )
 def _breakaway(forward, backward, t, stop, p):
-    """As ``_breakaway_of_sine``, of a base acceleration that is a sine or known by samples."""
-    if p.series.rows == 0:
+    """As ``_breakaway_of_sine``, of harmonics or samples."""
+    if excitation.is_sine(p):
         return _breakaway_of_sine(forward, backward, t, stop, p)
+    if excitation.is_harmonic(p):
+        return _breakaway_of_harmonics(forward, backward, t, stop, p)
     size = excitation.amplitude(p)
     end, side = sampled_input.bend_leaves(t, stop, forward / size, backward / size, p)
     return end, NO_EVENT if side == 0 else UP if side < 0 else DOWN
@@ -78,10 +100,10 @@ def _breakaway(forward, backward, t, stop, p):
 
 @inner
 def _waits_for_input(mode, p):
-    """Whether only the motion of the base can end a mode, a sine or known by samples."""
+    """Whether only the motion of the base can end a mode, by what is known of it in advance."""
     if not stuck(mode, p) or stray_vibration.acts(p) or input_distortion.acts(p):
         return False
-    moving, rests = states.active(p), excitation.is_sampled_or_sine(p)
+    moving, rests = states.active(p), True
     for i in range(VELOCITY + 1, len(moving)):
         rests = rests and not moving[i]
     return rests
