@@ -372,16 +372,16 @@ def test_sheets_with_titles_and_summaries_are_runs(tmp_path):
         sheet.merge_cells("A1:C1")
         for row in (
             [],
-            ["Rate", 1000],
+            ["Rate", 500],
             ["Time", "Stroke", "Load"],
             ["s", "mm", "N"],
-            *zip(*loop(), strict=True),
+            *zip(*(each[::2] for each in loop()), strict=True),
         ):
             sheet.append([*row])
         sheet.append(["Max", 50.0, 33.0])
     book.save(tmp_path / "one.xlsx")
     found = begun(tmp_path, tmp_path / "one.xlsx")
-    assert [test.time.size for test in found.tests] == [6000, 6000]
+    assert [test.time.size for test in found.tests] == [3000, 3000]
     assert found.model.oscillator["mass"] == pytest.approx(3.0, rel=0.15)
 
 

@@ -126,17 +126,13 @@ class DiagnosisResult:
         directory.mkdir(parents=True, exist_ok=True)
         # First of all, so that an interrupted write leaves no old verdict beside new data.
         (directory / JSON).unlink(missing_ok=True)
-        dataset.write(self.data, directory / DATASET)
-        for kind, file in PARTS.items():
+        for file in (*PARTS.values(), FORCE_CONFIG, FORCE_TABLE):
             (directory / file).unlink(missing_ok=True)
-            if kind in self.parts:
-                dataset.write(self.parts[kind], directory / file)
-        write_text(directory / EXTENDED, self.extended_toml)
-        for file in (FORCE_CONFIG, FORCE_TABLE):
-            (directory / file).unlink(missing_ok=True)
-            if file in self.force_files:
-                write_text(directory / file, self.force_files[file])
-        write_text(directory / JSON, text)
+        datasets = {DATASET: self.data, **{PARTS[kind]: own for kind, own in self.parts.items()}}
+        for file, data in datasets.items():
+            dataset.write(data, directory / file)
+        for file, content in {EXTENDED: self.extended_toml, **self.force_files, JSON: text}.items():
+            write_text(directory / file, content)
 
     @property
     def added(self) -> tuple[str, ...]:
