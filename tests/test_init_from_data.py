@@ -74,7 +74,8 @@ def test_formats_without_names(tmp_path):
     sound = np.column_stack([d / 100.0, f / 100.0])
     wavfile.write(tmp_path / "three.wav", int(RATE), (32767 * sound).astype("i2"))
     fixture_formats.uff(tmp_path / "four.uff", {"t": t, "d": d, "f": f})
-    for name in ("one.npy", "two.mat", "three.wav", "four.uff"):
+    savemat(tmp_path / "five.mat", {"ans": np.vstack([t, d, f])})
+    for name in ("one.npy", "two.mat", "three.wav", "four.uff", "five.mat"):
         (tmp_path / name[:3]).mkdir()
         found = begun(tmp_path / name[:3], tmp_path / name)
         test = found.tests[0]
@@ -82,6 +83,38 @@ def test_formats_without_names(tmp_path):
         assert np.corrcoef(test.displacement, d)[0, 1] > 0.999
         assert np.corrcoef(test.force, f)[0, 1] > 0.999
         assert test.sampling_rate == pytest.approx(RATE)
+
+
+@pytest.mark.parametrize("name", ["dspace.mat", "pandas.h5"])
+def test_names_may_stand_beside_the_samples(tmp_path, name):
+    """An array of structs of MATLAB and a block of pandas hold the names of channels beside their samples."""
+    t, d, _ = vibration()
+    names, columns = ["x_mass", "x_base"], [d, 0.3 * np.cos(2.0 * np.pi * 20.0 * t)]
+    if name == "pandas.h5":
+        with pytest.importorskip("h5py").File(tmp_path / name, "w") as file:
+            file["df/axis1"] = np.arange(t.size)
+            file["df/block0_items"] = np.array(["t", *names], "S")
+            file["df/block0_values"] = np.column_stack([t, *columns])
+    else:
+        recorded = np.array(
+            [(name, each, "mm") for name, each in zip(names, columns, strict=True)],
+            [("Name", object), ("Data", object), ("Unit", object)],
+        )
+        savemat(tmp_path / name, {"rec": {"X": {"Data": t, "Name": "Time"}, "Y": recorded}})
+    found = begun(tmp_path, tmp_path / name)
+    assert found.recorded_input == "displacement"
+    assert found.tests[0].kind == "steady"
+    np.testing.assert_allclose(found.tests[0].displacement, 1e-3 * d, rtol=1e-6)
+
+
+def test_one_column_of_volts_is_the_motion(tmp_path):
+    """Numbers by name far above it, as in a header of LabVIEW, are no names of columns."""
+    t, x = decay()
+    header = "Separator\tTab\nTime\t14:02:55\nX_Dimension\tTime\n***End_of_Header***\nX_Value\tVoltage"
+    text(tmp_path / "one.lvm", t, x, header=header, delimiter="\t")
+    found = begun(tmp_path, tmp_path / "one.lvm")
+    assert found.tests[0].kind == "transient"
+    assert found.tests[0].time.size < t.size  # from the release on
 
 
 @pytest.mark.few(2)
@@ -487,13 +520,12 @@ def test_what_drives_a_rig_is_its_input(tmp_path, header):
 def test_what_is_not_known_is_asked(tmp_path):
     _, d, f = loop()
     text(tmp_path / "one.csv", d, f, header="position_mm,motor current [A]")
-    told = invoke("init", tmp_path / "measured.toml", "--data", tmp_path / "one.csv", code=2)
-    assert "rate_hz" in told
+    begun(tmp_path, tmp_path / "one.csv")
     path = tmp_path / "measured.toml"
     asked = path.read_text()
     assert "# ? No column looks like time" in asked
     assert "how many N are 1 A" in asked
-    path.write_text(asked.replace("# rate_hz", "rate_hz").replace("scale = 1.0", "scale = 2.0"))
+    path.write_text(asked.replace("scale = 1.0", "scale = 2.0"))
     test = measured.read(path).tests[0]
     np.testing.assert_allclose(test.force, 2.0 * f, atol=1e-5)
     # The numbers of the model follow once the lines are edited.

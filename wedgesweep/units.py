@@ -75,7 +75,7 @@ WORDS = {
         "G": "g",
         "lbs": "lb",
         "rev/min": "rpm",
-        **dict.fromkeys(("newton", "newtons", "Newton"), "N"),
+        **dict.fromkeys(("newton", "newtons"), "N"),
         **dict.fromkeys(("degree", "degrees"), "deg"),
         **dict.fromkeys(("radian", "radians"), "rad"),
         **dict.fromkeys(("meter", "meters", "metres"), "m"),
@@ -96,7 +96,7 @@ def usual(unit: str) -> str:
     """A unit in the spelling used here: m/s2 is m/s^2, and a micro sign is u."""
     for other, own in SPELLINGS.items():
         unit = unit.replace(other, own)
-    return WORDS.get(unit, unit)
+    return WORDS.get(unit) or WORDS.get(unit.lower(), unit)
 
 
 def is_unit(word: str) -> bool:

@@ -367,6 +367,7 @@ def test_headers_between_blocks_are_left_out(tmp_path):
     found, plain = measured.read(path).tests[0], rows[1 : 1 + 3 * block]
     assert "6 lines of further headers left out" in found.remarks[0]
     assert found.time.size == len(plain)
+    assert [column.name for column in survey(tmp_path / "one.csv").columns] == ["t", "d", "v"]
     np.testing.assert_allclose(found.time, [float(row.split(",")[0]) for row in plain], atol=1e-12)
     text[block + 7] = "0.1,oops,0.2"
     with pytest.raises(measured.MeasuredError, match=rf"one.csv:{block + 8}: d: \"oops\" is not"):

@@ -31,11 +31,9 @@ SYMBOLS = {
     "displacement": r"d|x|y|z|q|s|phi|th|alpha|l|h",
     INPUT: r"u|in|exc",
 }
-# Words of what drives a rig, and of what it was told to do, or what is of no use here.
-DRIVES = (
-    r"input|excit|shaker|base|ground|table|driv(er|ing)|exciter|source|anreg|fuss|support|wall"
-    r"|side.?frame|axle|wheel|floor|foundation"
-)
+# Words of what a rig stands on, of all that drives it, and of what it was told to do, or what is of no use here.
+PLACES = r"base|ground|table|fuss|support|wall|side.?frame|axle|wheel|floor|foundation"
+DRIVES = rf"input|excit|shaker|driv(er|ing)|exciter|source|anreg|{PLACES}"
 # A count of samples, which is no time.
 COUNTS = r"n|nr\.?|no\.?|#|index|samples?|points?|count(er)?|row|scan"
 NOT_MEASURED = (
@@ -142,7 +140,7 @@ def _groups(columns: Sequence[Column]) -> list[list[Column]]:
 
 def _side_by_side(columns: Sequence[Column]) -> list[list[Column]]:
     """Columns of each run where several stand side by side, each with a time of its own or a number."""
-    starts = [i for i, column in enumerate(columns) if is_time(column)]
+    starts = [columns.index(column) for column in _times(columns)]
     if len(starts) < 2:
         return _numbered_runs(columns)
     edges = [0, *starts[1:], len(columns)]
@@ -180,6 +178,13 @@ def is_time(column: Column) -> bool:
     return not known and _goes_evenly(column)
 
 
+def _times(columns: Sequence[Column]) -> list[Column]:
+    """Columns that may be time, without the numbers of rows unless nothing else goes on."""
+    found = [column for column in columns if is_time(column)]
+    rows = [each for each in found if not _names_anything(each) and (np.diff(_numbers(each)) == 1.0).all()]
+    return [each for each in found if each not in rows] or found
+
+
 def _is_count(column: Column) -> bool:
     return re.fullmatch(COUNTS, column.label.strip().lower()) is not None
 
@@ -201,7 +206,7 @@ def _is_abscissa(column: Column) -> bool:
 
 def choose(columns: Sequence[Column]) -> Run:
     """The channels among the columns of a run."""
-    time = next(filter(is_time, columns), None) or next(filter(_is_abscissa, columns), None)
+    time = next(iter(_times(columns)), None) or next(filter(_is_abscissa, columns), None)
     stamps = None if time is None else time.channel.values
     rest = [column for column in columns if column is not time and not is_time(column) and _varies(column)]
     rest = [column for column in rest if not (_is_count(column) and _goes_evenly(column))]
@@ -211,7 +216,8 @@ def choose(columns: Sequence[Column]) -> Run:
         load, channels = None, _by_name(rest)
     if not any(name in channels for name in MOTIONS):
         unnamed = [column for column in rest if not _names_anything(column)]
-        channels |= _by_numbers(unnamed, stamps)
+        found = _by_numbers(unnamed, stamps)
+        channels = {name: each for name, each in channels.items() if each not in found.values()} | found
     if FORCE in channels and "displacement" in channels and unit_of(channels[FORCE], [FORCE]) in FOREIGN:
         signals = [_thinned(channels[name], stamps) for name in ("displacement", FORCE)]
         if _share(*signals) < STANDS:
@@ -345,13 +351,18 @@ def _best(
 
 
 def _quantity(column: Column) -> str:
-    """What an input is: by its unit, by its name, or else a force; empty if it is none of these."""
-    unit = unit_of(column, QUANTITIES)
+    """What an input is: by its unit, its name, or the letter before it, as in x_base; empty if it is none.
+
+    Without any of these a place moves, and all else is a force.
+    """
+    unit, label = unit_of(column, QUANTITIES), column.label.lower()
     for quantity in QUANTITIES:
         if unit in UNITS[quantity]:
             return quantity
     named = next((each for each in STEMS if each in QUANTITIES and _names(column, each)), "")
-    return named or ("" if unit else FORCE)
+    letter = re.split(r"[_\s]", label)[0]
+    named = named or next((each for each in QUANTITIES if re.fullmatch(SYMBOLS[each], letter)), "")
+    return named or ("" if unit else "displacement" if re.search(PLACES, label) else FORCE)
 
 
 def _by_numbers(columns: Sequence[Column], time: np.ndarray | None) -> dict[str, Column]:
@@ -504,8 +515,9 @@ def _clock(column: Column) -> Chosen:
         return Chosen(column, "excel", {}, ("days of Excel?",))
     if unit in UNITS[TIME]:
         return Chosen(column, unit)
-    if EPOCH[0] < first < EPOCH[1] and step < 10.0:
-        return Chosen(column, "epoch")
+    for unit, size in {"epoch": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}.items():
+        if EPOCH[0] < size * first < EPOCH[1] and size * step < 10.0:
+            return Chosen(column, unit)
     likely = "s" if step < STEPS[1] else "ms"
     if step > 1e3 * STEPS[1]:
         likely = "us"

@@ -60,7 +60,9 @@ def _rate(first: Guessed) -> Iterator[str]:
         return
     if first.rate is None:
         yield f"{ASK}No column looks like time: how many samples are there in a second?"
-        yield f"# rate_hz = {UNKNOWN_RATE}"
+        if first.kind == LOOP:
+            yield f"{ASK}At another rate friction and springs stay as they are; damping and mass do not."
+        yield f"{'' if first.kind == LOOP else '# '}rate_hz = {UNKNOWN_RATE}"
     else:
         yield f"rate_hz = {first.rate:.10g}  # as a number in the file says"
 

@@ -14,6 +14,8 @@ from wedgesweep.readers.table import Channel, Wanted
 HDF5_MARK = b"\x89HDF\r\n\x1a\n"
 # A v7.3 file of MATLAB is HDF5 behind a header of this length.
 MATLAB_HEADER = 512
+# Fields of a struct with the unit and the name of its samples.
+UNIT_FIELDS, NAME_FIELDS = ("unit", "units"), ("name", "label", "title")
 # Greatest size of integer samples, so that full scale is 1; 8-bit samples are counted from 128.
 FULL_SCALE = {
     "i": lambda dtype: -float(np.iinfo(dtype).min),
@@ -99,14 +101,25 @@ def _matlab_5(file: Path, wanted: Wanted) -> dict[str, Channel | None]:
 
     classes = {name: kind for name, _, kind in whosmat(file)}
     names = [name for i, (name, kind) in enumerate(classes.items(), 1) if wanted(name, i) or kind == "struct"]
-    found = {name: Channel(each) for name, each in _fields(loadmat(file, variable_names=names))}
+    found = dict(_fields(loadmat(file, variable_names=names)))
     listed: dict[str, Channel | None] = dict.fromkeys(classes)
     return listed | {name: each for name, each in found.items() if not name.startswith("__")}
 
 
-def _fields(variables: Mapping[str, Any], path: str = "") -> Iterator[tuple[str, Any]]:
-    """Variables, and the fields of structs among them as struct.field."""
+def _fields(variables: Mapping[str, Any], path: str = "") -> Iterator[tuple[str, Channel]]:
+    """Variables, and the fields of structs among them as struct.field, of arrays of structs as struct(2).field.
+
+    Beside the samples a recorder's struct holds the name of a channel and its unit.
+    """
+    words = {key.lower(): str(value[0]) for key, value in variables.items() if path and _is_word(value)}
+    unit, label = (next(filter(None, map(words.get, keys)), "") for keys in (UNIT_FIELDS, NAME_FIELDS))
     for name, value in variables.items():
-        yield path + name, value
-        if isinstance(value, np.ndarray) and value.dtype.names and value.size == 1:
-            yield from _fields({each: value[each].item() for each in value.dtype.names}, f"{path}{name}.")
+        yield path + name, Channel(value, unit, label=label)
+        if isinstance(value, np.ndarray) and value.dtype.names:
+            for number, each in enumerate(value.ravel(), 1):
+                place = f"{path}{name}." if value.size == 1 else f"{path}{name}({number})."
+                yield from _fields({key: each[key] for key in value.dtype.names}, place)
+
+
+def _is_word(value: Any) -> bool:
+    return isinstance(value, np.ndarray) and value.dtype.kind == "U" and value.shape == (1,)

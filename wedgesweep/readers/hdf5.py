@@ -18,19 +18,31 @@ def hdf5(file: Path, wanted: Wanted) -> dict[str, Channel | None]:
 
 def _hdf5(h5py: Any, file: Path, wanted: Wanted) -> dict[str, Channel | None]:
     with h5py.File(file, "r") as opened:
-        names: list[str] = []
-        opened.visititems(lambda name, each: names.append(name) if isinstance(each, h5py.Dataset) else None)
+        sets: list[Any] = []
+        opened.visititems(lambda _, each: sets.append(each) if isinstance(each, h5py.Dataset) else None)
+        listed = [(name, each, column) for each in sets for name, column in _columns(each)]
         return {
-            name: _channel(opened[name]) if wanted(name, number) else None
-            for number, name in enumerate(names, 1)
+            name: _channel(stored, column) if wanted(name, number) else None
+            for number, (name, stored, column) in enumerate(listed, 1)
         }
 
 
-def _channel(stored: Any) -> Channel:
-    """A dataset; MATLAB writes the dimensions of its arrays in reverse."""
+def _columns(stored: Any) -> list[tuple[str, Any]]:
+    """Name of a dataset; or names and columns of a block of pandas, which lists the names beside it."""
+    path = stored.name.removeprefix("/")
+    items = stored.parent.get(f"{path.rpartition('/')[2].removesuffix('_values')}_items")
+    if items is None or not path.endswith("_values") or stored.shape[1:] != items.shape:
+        return [(path, ...)]
+    names = [each.decode("utf-8", "replace") if isinstance(each, bytes) else str(each) for each in items[()]]
+    return [(f"{path.rpartition('/')[0]}/{name}", (slice(None), i)) for i, name in enumerate(names)]
+
+
+def _channel(stored: Any, column: Any) -> Channel:
+    """A dataset or a column of it; MATLAB writes the dimensions of its arrays in reverse."""
     unit = stored.attrs.get("units", stored.attrs.get("unit", ""))
     unit = unit.decode("utf-8", "replace") if isinstance(unit, bytes) else str(unit)
-    return Channel(np.transpose(stored[()]) if "MATLAB_class" in stored.attrs else stored[()], unit)
+    values = np.transpose(stored[()]) if "MATLAB_class" in stored.attrs else stored[()]
+    return Channel(values if column is ... else values[column], unit)
 
 
 def netcdf(file: Path, wanted: Wanted) -> dict[str, Channel | None]:

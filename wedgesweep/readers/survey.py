@@ -206,19 +206,21 @@ def _single_numbers(lines: Sequence[str], how: Dialect, columns: Sequence[int]) 
 def _labels(
     above: Sequence[str], delimiter: str, width: int, numbers: Sequence[int]
 ) -> dict[int, tuple[str, ...]]:
-    """Cells above each column of numbers, from the top; lines with few cells are no header."""
+    """Cells above each column of numbers, from the top; lines with few cells are no header, and end it."""
     found: dict[int, tuple[str, ...]] = dict.fromkeys(numbers, ())
-    for line in above:
+    for line in reversed(above):
         plain = line.lstrip().lstrip("".join(csv_dialect.COMMENTS)).strip()
         row = csv_dialect.split(plain, delimiter)
         if delimiter == " " and len(row) > width:
             row = WORDS.findall(plain)
         if not width // 2 < len(row) <= width + 1:
+            if plain and any(found.values()):
+                break
             continue
         for number in numbers:
             cell = row[number - 1] if number <= len(row) else ""
             if cell and not csv_dialect.is_number(cell):
-                found[number] += (cell,)
+                found[number] = (cell, *found[number])
     return found
 
 

@@ -178,11 +178,9 @@ def _picked(name: Name, variables: Mapping[str, Channel | None]) -> Channel:
 
 
 def matrix_of(values: np.ndarray) -> np.ndarray:
-    """A matrix with a row for each sample; Simulink logs k signals as k x 1 x n."""
-    if values.ndim < 3 or values.squeeze().ndim != 2:
-        return values
-    rows, columns = values.squeeze().shape
-    return values.squeeze() if rows >= columns else values.squeeze().T
+    """A matrix with a row for each sample; Simulink logs k signals as k x 1 x n, or k x n."""
+    matrix = values.squeeze() if values.squeeze().ndim == 2 else values
+    return matrix.T if matrix.ndim == 2 and matrix.shape[0] < matrix.shape[1] else matrix
 
 
 def _column(values: np.ndarray, number: int) -> np.ndarray:

@@ -74,15 +74,15 @@ def _rows_of_text(lines: Sequence[str], dialect: Dialect, missing: set[str]) -> 
 def _further_headers(lines: Sequence[str], dialect: Dialect) -> set[int]:
     """Lines of headers between the data, where each block of a recorder has its own.
 
-    Each is the line of names again, with as many lines below it as at first, and what is no data above it.
+    Each is the line above the data again, and what is no data above it.
     """
-    if dialect.header is None or _is_sample(lines[dialect.header], dialect):
-        return set()
-    names, below, found = lines[dialect.header], dialect.first - dialect.header, set[int]()
+    last = next((line for line in reversed(lines[: dialect.first]) if line.strip()), "")
+    found = set[int]()
+    if not last or _is_sample(last, dialect):
+        return found
     for place in range(dialect.first, len(lines)):
-        if lines[place] == names:
-            found |= {*range(place, place + below)}
-            above = place - 1
+        if lines[place] == last:
+            above = place
             while above >= dialect.first and above not in found and not _is_sample(lines[above], dialect):
                 found.add(above)
                 above -= 1
@@ -91,7 +91,8 @@ def _further_headers(lines: Sequence[str], dialect: Dialect) -> set[int]:
 
 def _is_sample(line: str, dialect: Dialect) -> bool:
     cells = csv_dialect.split(line, dialect.delimiter)
-    return all(csv_dialect.is_number(cells[place]) for place in dialect.places if place < len(cells))
+    held = [cells[place] for place in dialect.places if place < len(cells)]
+    return any(held) and all(map(csv_dialect.is_number, held))
 
 
 def _header_faults(lines: Sequence[str], names: Sequence[Name], stated: Mapping[str, Any]) -> list[str]:
