@@ -65,7 +65,7 @@ def test_one_harmonic_is_the_sine_of_the_paper_and_costs_nothing():
 
 @pytest.mark.parametrize("law", ["coulomb", "static-dynamic", "exponential"])
 def test_the_same_harmonics_as_an_effect_give_the_same_response(law):
-    """Power series follow slip under harmonics, and tell when a bolster breaks away; Runge and Kutta do here."""
+    """As harmonics power series follow slip and tell when a bolster breaks away; as an effect Runge-Kutta."""
     there = steady(case(excitation.SINE, {"input_distortion": DISTORTION}, law))
     here = steady(case(law=law))
     assert np.abs(here - there).max() < 1e-9 * np.abs(there).max()

@@ -1,7 +1,7 @@
 """Sticking without integration: set-valued friction holds the bolster until the base has accelerated enough.
 
 While only the base moves, the bolster rests between two base accelerations. As long as both normal forces
-stay positive these are known, and so are the times at which a base motion reaches them, of harmonics or samples.
+stay positive these are known, and so are the times at which harmonics or a sampled motion reach them.
 """
 
 from math import asin, ceil, inf, pi
