@@ -15,7 +15,7 @@ from wedgesweep.hybrid.state import CHATTERING, FAILED, LOCKED, OK
 from wedgesweep.solvers.integrate import EVENTS_PER_PERIOD
 from wedgesweep.solvers.period_detection import LONGEST_PERIOD
 from wedgesweep.solvers.period_map import memory, prepared, run_periods
-from wedgesweep.solvers.shooting import copy, run_map, settle, shooting
+from wedgesweep.solvers.shooting import copy, run_map, settling, shooting
 from wedgesweep.solvers.trajectory import CaseError, Samples, TimedWindow, Trajectory, TransientWindow, Window
 from wedgesweep.systems import compact, state_count
 
@@ -123,9 +123,12 @@ def run_batch(
         settings.periods + LONGEST_PERIOD,
         forces=bool(batch.waveforms.size),
     )
+    cases = prepared(compact(parameters))
     # One of two loops: code of the other one need not be compiled.
-    run = _run_to_steady_state if settings.steady else _run_given_periods
-    run(prepared(compact(parameters)), parameters, settle_periods, settings, room, batch)
+    if settings.steady:
+        _run_to_steady_state(cases, parameters, settling(cases, room), settings, room, batch)
+    else:
+        _run_given_periods(cases, parameters, settle_periods, settings, room, batch)
 
 
 @allocating
@@ -176,7 +179,7 @@ def _run_given_periods(cases, parameters, settle_periods, settings, room, batch)
 
 
 @compiled
-def _run_to_steady_state(cases, parameters, settle_periods, settings, room, batch):
+def _run_to_steady_state(cases, parameters, settle, settings, room, batch):
     """Each case settles until its response repeats."""
     room, batch = borrowed(room), borrowed(batch)
     for i in range(parameters.size):

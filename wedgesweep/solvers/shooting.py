@@ -11,9 +11,10 @@ unstable, and those whose mean position is not determined.
 from math import isfinite
 from typing import Any, NamedTuple
 
+import numba
 import numpy as np
 
-from wedgesweep.compiled import allocating, inlined, inner
+from wedgesweep.compiled import Pointer, allocating, inlined, inner
 from wedgesweep.hybrid.accumulators import clear
 from wedgesweep.hybrid.state import OK
 from wedgesweep.solvers.linear_algebra import inverted, places_of, spectral_radius
@@ -359,7 +360,7 @@ def _creep(y, moves, past, count, shooting):
 
 
 @allocating
-def settle(y, periods, jacobian, shooting):
+def _settle(y, periods, jacobian, shooting):
     """Find a state at phase 0 that repeats, from y (rest where it is NaN) and J (NaN: unknown).
 
     ``periods``: period of the response that y should be close to, for which Newton's method is tried first;
@@ -420,3 +421,22 @@ def _integrate(y, periods, jacobian, run, shooting):
                     return Found(OK, found.period, run, found.kept)
             run += _creep(y, moves, past, count, shooting)
     return Found(OK, 0, run, 0)
+
+
+_shared: list[Pointer] = []
+
+
+def settling(cases: Any, memory: Any) -> Pointer:
+    """``_settle`` for all callers, whatever their cases: to compile it takes longer than to compile them.
+
+    ``cases``, ``memory``: examples.
+    """
+    if not _shared:
+
+        def settle(y, periods, jacobian, shooting):
+            return _settle(y, periods, jacobian, shooting)
+
+        example = Shooting(cases, 0, cases.scales[0], cases.clocks[0], 1.0, 1.0, 1, memory, True)
+        arguments = (cases.scales[0], 0, cases.scales, example)
+        _shared.append(Pointer(settle, numba.typeof(Found(0, 0, 0, 0)), arguments))
+    return _shared[0]
