@@ -31,7 +31,7 @@ SYMBOLS = {
     "displacement": r"d|x|y|z|q|s|phi|th|alpha|l|h",
     INPUT: r"u|in|exc",
 }
-# Words of what a rig stands on, of all that drives it, and of what it was told to do, or what is of no use here.
+# Words of what a rig stands on, of all that drives it, and of what it was told to do, or is of no use here.
 PLACES = r"base|ground|table|fuss|support|wall|side.?frame|axle|wheel|floor|foundation"
 DRIVES = rf"input|excit|shaker|driv(er|ing)|exciter|source|anreg|{PLACES}"
 # A count of samples, which is no time.

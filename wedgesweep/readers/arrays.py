@@ -107,7 +107,7 @@ def _matlab_5(file: Path, wanted: Wanted) -> dict[str, Channel | None]:
 
 
 def _fields(variables: Mapping[str, Any], path: str = "") -> Iterator[tuple[str, Channel]]:
-    """Variables, and the fields of structs among them as struct.field, of arrays of structs as struct(2).field.
+    """Variables; fields of structs among them as struct.field, of arrays of structs as struct(2).field.
 
     Beside the samples a recorder's struct holds the name of a channel and its unit.
     """
