@@ -23,6 +23,7 @@ FAULTS = {
     "family": ("missing-force", "missing-froce", "family: unknown name 'missing-froce'; did you mean"),
     "extends": ('extends=("force",)', 'extends=("size",)', "extends: unknown name 'size'"),
     "arguments": ("(z, velocity, y, p)", "(z, y, p)", "(z, y, p); the hook has (z, velocity, y, p)"),
+    "linear": ("TRAVEL = 1", "LINEAR = True\nsliding = None\nTRAVEL = 1", "LINEAR: an effect with states or"),
     "equation": ("(z/z_1)^5", "(z/z_1^5", "EQUATIONS"),
     "symbol": ('"z_1"', '"z_2"', "symbol 'z_1' is not explained"),
     "name": (FORCE, FORCE.replace("TRAVEL", "LENGTH"), "force_on_mass: NameError: name 'LENGTH'"),

@@ -158,6 +158,10 @@ def _problems(module: ModuleType, source: _Source) -> Iterator[str]:
             yield source.at(name, problem)
     if getattr(module, "STATES", ()) and not hasattr(module, "acts"):
         yield source.at("STATES", "an effect with states needs acts(p), whether they move")
+    if getattr(module, "LINEAR", False) and (getattr(module, "STATES", ()) or hasattr(module, "sliding")):
+        yield source.at(
+            "LINEAR", "an effect with states or a sliding friction of its own is not; leave LINEAR out"
+        )
 
 
 def _choices(effect: Effect, source: _Source) -> Iterator[str]:
