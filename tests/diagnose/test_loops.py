@@ -305,6 +305,18 @@ def test_friction_that_the_model_lacks_may_be_elastic(tmp_path, effect):
     assert numbers == pytest.approx([3.0, 0.5][: len(numbers)], rel=0.03)
 
 
+def test_a_record_may_begin_with_a_reversal(tmp_path):
+    """The force of bristles is known all along, although that before the first sample is not."""
+    path = write(tmp_path, noise=(1e-9, 0.02), motions=((0.01, 1.1, 6.0),))
+    header, *lines = (tmp_path / "loop0.csv").read_text().splitlines()
+    last = int(np.argmax([float(line.split(",")[1]) for line in lines[:1500]]))
+    for first in range(last - 2, last + 2):
+        (tmp_path / "loop0.csv").write_text("\n".join([header, *lines[first:]]))
+        own = loop_data(read(path)).recordings[0]
+        bristles = {"maxwell_presliding": {"force": 3.0, "stiffness": 1e4, "spread": 1.0}}
+        assert np.isfinite(own.simulated([bristles], np.zeros((1, len(own.blocks))))).all()
+
+
 def test_strokes_in_one_direction_are_loops(tmp_path):
     path = write(tmp_path)
     header, *lines = (tmp_path / "loop0.csv").read_text().splitlines()
