@@ -6,7 +6,6 @@ from scipy.signal import lfilter
 
 from tests.diagnose.answers import diagnosed
 from tests.diagnose.test_transients import HIDDEN, coloured, write
-from wedgesweep.diagnose.noise_bins import noise_of_record, quiet_bins
 from wedgesweep.diagnose.noise_spectrum import periodogram
 from wedgesweep.diagnose.transient.channel_differences import differences
 from wedgesweep.diagnose.transient.noise import noise_of_channels
@@ -139,30 +138,6 @@ def test_records_of_other_sampling_rates_have_noise_of_their_own():
     assert found[1, 1].correlation < 0.3
 
 
-def test_noise_shows_where_the_motion_is_over():
-    rng, (_, v) = np.random.default_rng(5), decay(0.08)
-    assert (v[-300:] == 0.0).all()
-    ratio = []
-    for _ in range(8):
-        quiet = quiet_bins(noisy(v, 0.9, rng))
-        below = quiet.up_to(4.0 * NATURAL)
-        ratio.append((below.power / power(LEVEL * v.std(), 0.9, below.frequency)).mean())
-    assert np.mean(ratio) == pytest.approx(1.0, abs=0.3)
-    assert quiet_bins(noisy(decay(0.001)[1], 0.9, rng)) is None
-
-
-@pytest.mark.acceptance
-def test_a_record_by_itself_takes_the_skirts_of_its_kinks_for_red_noise():
-    # The reason for which tests are looked at together: kinks of the velocity fall with frequency like noise.
-    rng, (_, v) = np.random.default_rng(0), decay(0.04)
-    alone = [
-        noise_of_record(noisy(v, 0.0, rng))(AT[1]) / power(LEVEL * v.std(), 0.0, AT[1]) for _ in range(12)
-    ]
-    assert max(alone) > 10.0
-    assert ratios(0.0, 0, (0, 1))[..., 1].max() < 6.0
-
-
-@pytest.mark.few(1)
 @pytest.mark.parametrize("samples", [48, 100, 200])
 def test_a_short_record_has_noise_of_some_size(samples):
     rng, (x, v) = np.random.default_rng(6), decay(0.08, samples)

@@ -1,11 +1,13 @@
 """Intervals by the rise of chi-squared where its curvature would make them too narrow."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from tests.diagnose.synthetic import LAG, drawn, searched
+from wedgesweep.diagnose import profile_likelihood as profile
 from wedgesweep.diagnose.least_squares import minimise, tight_refit
 from wedgesweep.diagnose.model import Model
 from wedgesweep.diagnose.profile_likelihood import RISE, profile_likelihood
@@ -105,3 +107,32 @@ def test_no_number_is_tried_beyond_its_bound(monkeypatch):
 def test_what_has_no_steady_response_has_no_profile(lag):
     lost = replace(lag, evaluation=replace(lag.evaluation, found_tests=np.zeros(lag.model.data.tests, bool)))
     np.testing.assert_array_equal(std(profile_likelihood(lost, serial)), std(lost))
+
+
+def end_of_a_switch(monkeypatch, std, rise, value=0.1):
+    """Upper end of the interval of a number in 0 to 1, by the rise of chi-squared, and what was tried."""
+    tried = []
+
+    def held(side, off, start):
+        tried.append(value + off * std)
+        return SimpleNamespace(chi2=side.fit.chi2 + rise(tried[-1]))
+
+    monkeypatch.setattr(profile._Side, "held", held)
+    hypothesis = SimpleNamespace(parameters=[SimpleNamespace(switches=True)])
+    model = SimpleNamespace(low=np.zeros(1), high=np.ones(1), hypothesis=hypothesis)
+    fit = SimpleNamespace(x=np.array([value]), covariance=np.array([[std**2]]), model=model, chi2=50.0)
+    side = profile._Side(fit, 0, 1.0)
+    found = profile._profile_end(side, side.nearest)
+    return value + found.end * std, tried
+
+
+def test_an_interval_contains_ridges_behind_which_the_fit_is_nearly_as_good(monkeypatch):
+    end, tried = end_of_a_switch(monkeypatch, 0.01, lambda x: 1.0 if 0.2 < x < 0.3 else 3.0 * RISE)
+    assert 0.3 < end < 0.6
+    assert max(tried) == pytest.approx(1.0)
+
+
+def test_nothing_is_tried_far_beyond_an_interval(monkeypatch):
+    end, tried = end_of_a_switch(monkeypatch, 0.01, lambda x: RISE * (x / 0.11) ** 8)
+    assert end == pytest.approx(0.1196, abs=1e-3)
+    assert len(tried) == 3

@@ -10,7 +10,6 @@ from dataclasses import replace
 from math import exp, inf, log
 from typing import NamedTuple
 
-import numpy as np
 from scipy.optimize import brentq
 from scipy.special import chdtri
 
@@ -109,10 +108,6 @@ def refined(fit: Fit) -> Accuracy:
 
 
 def _minimised(fit: Fit, size: float) -> Fit:
-    """A fit under a model error, from where it is or with nuisance and uncertain parameters as stated."""
+    """A fit under a model error, from where it is."""
     data = fit.model.data.with_model_error(size)
-    model = fit.model.on(data)
-    here = data.compared_again(fit.evaluation)
-    x = np.r_[fit.x[: model.size], model.uncertain.mean]
-    as_stated = model.evaluate(replace(data.as_stated(fit.point), x=x))
-    return minimise(model, min(here, as_stated, key=lambda each: each.chi2), BRIEF)
+    return minimise(fit.model.on(data), data.compared_again(fit.evaluation), BRIEF)

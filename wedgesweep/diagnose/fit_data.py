@@ -12,7 +12,6 @@ and the first L are fitted by simulation.
 
 from abc import abstractmethod
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, Self
 
 import numpy as np
@@ -147,14 +146,6 @@ class FitData(Protocol):
     @abstractmethod
     def start(self) -> tuple[np.ndarray, WarmStart]:
         """Nuisance parameters (T, N) as stated, and a start at rest."""
-
-    def as_stated(self, point: Point) -> Point:
-        """A point with the nuisance parameters that have a prior as stated, and with a start at rest."""
-        stated, at_rest = self.start()
-        known, nuisance = np.isfinite(self.nuisance_std), point.nuisance.copy()
-        priors = known.shape[1]
-        nuisance[:, :priors] = np.where(known, stated[:, :priors], nuisance[:, :priors])
-        return replace(point, nuisance=nuisance, warm=at_rest)
 
     @abstractmethod
     def subset(self, rows: np.ndarray) -> Self:

@@ -22,6 +22,11 @@ RISE = TWO_SIDED**2
 RISE_SHARE, TRIES = 0.8, 5
 # The next try is at most this many times further out.
 FURTHER = 3.0
+# Number of values at which the parameter of a switch is held, from the end by the curvature to the bound.
+VALUES = 6
+# No further value is tried once chi-squared has risen by FAR_BEYOND times RISE. Other minima further away are
+# no part of the interval; the scan over the whole range has looked there (search.single_fit).
+FAR_BEYOND = 10.0
 # A fit whose chi-squared is lower by this much becomes the new centre, at most this many times.
 LOWER, RESTARTS = 0.5, 6
 
@@ -115,6 +120,8 @@ def _profile_end(side: _Side, nearest: Fit) -> ProfileEnd:
     switches = fit.model.hypothesis.parameters[side.parameter].switches
     if TWO_SIDED * side.std > high - low and (switches or fit.x[side.parameter] in (low, high)):
         return _end_by_bisection(side, nearest)
+    if switches:
+        return _end_beyond_ridges(side, nearest)
     end, held = TWO_SIDED, nearest
     for tries in range(TRIES):
         off = min(end, furthest)
@@ -146,3 +153,25 @@ def _end_by_bisection(side: _Side, nearest: Fit) -> ProfileEnd:
             break
         middle = 0.5 * (low + high)
     return ProfileEnd(high, side.fit)
+
+
+def _end_beyond_ridges(side: _Side, nearest: Fit) -> ProfileEnd:
+    """The end for the parameter of a switch: the first tried value beyond all that fit nearly as well.
+
+    There chi-squared is rugged: impacts come and go, and several responses are equally steady.
+    """
+    fit, furthest = side.fit, side.furthest
+    end = TWO_SIDED
+    if furthest <= TWO_SIDED:
+        return ProfileEnd(end, fit)
+    values = np.geomspace(TWO_SIDED, furthest, VALUES)
+    for value, beyond in zip(values, [*values[1:], furthest], strict=True):
+        held = nearest if value == values[0] else side.held(value, fit)
+        rise = held.chi2 - fit.chi2
+        if rise < -LOWER:
+            return ProfileEnd(value, held)
+        if rise > FAR_BEYOND * RISE:
+            break
+        if rise < RISE:
+            end = beyond
+    return ProfileEnd(float(end), fit)

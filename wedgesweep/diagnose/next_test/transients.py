@@ -9,7 +9,6 @@ from wedgesweep.diagnose.evaluation import Point
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.next_test.designs import SIZES, Design
 from wedgesweep.diagnose.next_test.sensors import Sensors, beside_signal
-from wedgesweep.diagnose.noise_spectrum import NoiseSpectrum
 from wedgesweep.diagnose.transient.cutting import FEWEST_COMPARED, HARMONICS, WINDOW
 from wedgesweep.diagnose.transient.input_noise import InputNoise
 from wedgesweep.diagnose.transient.recorded_input import no_input
@@ -50,8 +49,8 @@ def sweeps(best: Fit, known: Sensors, measured: TransientData | None = None) -> 
     tests = []
     for size in sizes:
         given = from_samples(size * shape, duration / count, quantity, fastest=2.0 * pi * high)
-        white = NoiseSpectrum(0.0, 0.0, (known.share * size) ** 2 / 2.0)
-        noise = InputNoise(white, 0, 2.0 * pi * high / known.rate, (0.0,) * len(known.spectra))
+        power = np.full(2, (known.share * size) ** 2 / 2.0)
+        noise = InputNoise(power, 0, 2.0 * pi * high / known.rate, (0.0,) * len(known.spectra))
         tests.append(
             replace(_window(known, known.travel, duration), input=given, input_noise=noise, guess=(0.0, 0.0))
         )

@@ -13,7 +13,6 @@ from typing import NamedTuple
 import numpy as np
 from scipy.fft import dct
 
-from wedgesweep.diagnose.noise_spectrum import NoiseSpectrum
 from wedgesweep.diagnose.sampled_data import LARGEST_BLOCK, Decorrelation, decorrelation
 from wedgesweep.diagnose.smoothing import derivative
 from wedgesweep.sampled_input import SampledInput, polynomials
@@ -25,19 +24,20 @@ BEYOND = 3
 class InputNoise(NamedTuple):
     """Noise of a recorded input.
 
-    ``recorded``: of a sample; ``integrated``: how often what was recorded is integrated to what acts;
-    ``cutoff`` (rad a sample): highest frequency that acts; ``shares`` (C,): of the base's displacement in
-    each channel, which was converted with it.
+    ``power`` (f,): of a sample by frequency, from 0 to half the sampling rate; ``integrated``: how often what
+    was recorded is integrated to what acts; ``cutoff`` (rad a sample): highest frequency that acts;
+    ``shares`` (C,): of the base's displacement in each channel, which was converted with it.
     """
 
-    recorded: NoiseSpectrum
+    power: np.ndarray
     integrated: int
     cutoff: float
     shares: tuple[float, ...]
 
     def of_acting(self, frequency: np.ndarray, step: float) -> np.ndarray:
         """Variance (m^2, or N^2 of a force) of a cosine of what acts, at frequencies in rad a sample."""
-        return self.recorded(frequency) / (frequency / step) ** (2 * self.integrated)
+        recorded = np.interp(frequency, np.linspace(0.0, pi, self.power.size), self.power)
+        return recorded / (frequency / step) ** (2 * self.integrated)
 
 
 class Cosines(NamedTuple):

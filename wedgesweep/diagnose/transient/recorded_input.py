@@ -11,6 +11,7 @@ from wedgesweep.diagnose.noise_bins import noise_of_record
 from wedgesweep.diagnose.noise_spectrum import NoiseSpectrum
 from wedgesweep.diagnose.smoothing import SETTLING, derivative
 from wedgesweep.diagnose.transient.input_noise import InputNoise
+from wedgesweep.periodogram import power_of
 from wedgesweep.sampled_input import INTEGRATED, SampledInput, from_samples
 
 # Cut-off of the input over the highest frequency that stands out in it: what lies above is noise, whose
@@ -22,6 +23,8 @@ HIGHEST, SAMPLED = 0.4, 8.0
 # Largest rms of the input's noise over that of the input: where all that moves the base looks like noise,
 # most of it is not.
 LARGEST_NOISE = 0.05
+# Bins over which the spectrum of the input is averaged, as a share of all.
+AVERAGED = 0.01
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,9 +37,7 @@ class RecordedInput:
 
     @cached_property
     def noise(self) -> NoiseSpectrum:
-        """Noise of the samples, at most LARGEST_NOISE of their rms."""
-        found = noise_of_record(self.samples)
-        return found.amplified(min(LARGEST_NOISE * float(self.samples.std()) / max(found.std, 1e-300), 1.0))
+        return noise_of_record(self.samples)
 
     @cached_property
     def size(self) -> float:
@@ -86,10 +87,17 @@ class RecordedInput:
             return derivative(self.displacement, self.rate)
         return self.acting(np.arange(self.samples.size) / self.rate, 2)
 
+    @cached_property
+    def noise_power(self) -> np.ndarray:
+        """Power (f,) of the noise of a sample by frequency, from 0 to half the sampling rate."""
+        given = _power(self.samples)
+        noise = np.minimum(self.noise(np.linspace(0.0, pi, given.size)), given)
+        return noise * min(LARGEST_NOISE**2 * given.sum() / max(noise.sum(), 1e-300), 1.0)
+
     def input_noise(self, shares: tuple[float, ...]) -> InputNoise:
         """The noise as it acts; ``shares`` (C,): of the base's displacement in each channel."""
         cutoff = 2.0 * pi * min(self._cutoff, 0.5)
-        return InputNoise(self.noise, INTEGRATED[self.quantity], cutoff, shares)
+        return InputNoise(self.noise_power, INTEGRATED[self.quantity], cutoff, shares)
 
 
 def starting_at(given: SampledInput, start: float) -> SampledInput:
@@ -100,3 +108,10 @@ def starting_at(given: SampledInput, start: float) -> SampledInput:
 def no_input(span: float) -> SampledInput:
     """An input that is zero for some time (s)."""
     return from_samples(np.zeros(2), span)
+
+
+def _power(samples: np.ndarray) -> np.ndarray:
+    """Power (n // 2 + 1,) of samples (n,) by frequency, averaged over neighbours."""
+    found = power_of(samples - samples.mean())
+    kernel = np.ones(2 * max(int(AVERAGED * found.size), 3) + 1)
+    return np.convolve(found, kernel, mode="same") / np.convolve(np.ones(found.size), kernel, mode="same")
