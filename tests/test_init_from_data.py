@@ -117,6 +117,14 @@ def test_one_column_of_volts_is_the_motion(tmp_path):
     assert found.tests[0].time.size < t.size  # from the release on
 
 
+def test_files_of_one_layout_are_read_in_one_way(tmp_path):
+    """Also where the numbers of another file look as if its channels were the other way round."""
+    t, d, f = loop()
+    files = [text(tmp_path / "one.csv", t, d, f), text(tmp_path / "two.csv", t, f, d)]
+    written, _ = first_files.write(tmp_path / "measured.toml", files)
+    assert "columns.force.column" not in written.read_text()
+
+
 @pytest.mark.few(2)
 @pytest.mark.parametrize(
     "header", ["", "time (s);weg [mm];kraft [N]", "# t, s\n# run 7", "t;pos;load\ns;mm;N"]

@@ -11,7 +11,7 @@ from wedgesweep.guess.columns import FORCE, HUGE, INPUT, Chosen, Run, choose, ru
 from wedgesweep.guess.kind import WHOLE, Part, from_release, from_steady, kind_of, parts_of
 from wedgesweep.measured.clock import continued
 from wedgesweep.measured.declarations import LOOP, MOTIONS, STEADY, TRANSIENT
-from wedgesweep.readers.survey import Survey
+from wedgesweep.readers.survey import Column, Survey
 from wedgesweep.units import UNITS
 
 # Names of single numbers that are a sampling rate (Hz), and of those that are a sampling interval (s).
@@ -39,10 +39,11 @@ class Guessed:
 
 def tests_of(surveys: Sequence[Survey]) -> list[Guessed]:
     """The tests that files hold, in their order."""
+    parts = [(survey, columns) for survey in surveys for columns in runs_of(survey.columns)]
+    first = choose(parts[0][1])
     found = [
-        Guessed(survey.path, choose(columns), rate=_rate(survey))
-        for survey in surveys
-        for columns in runs_of(survey.columns)
+        Guessed(survey.path, _like(first, parts[0][1], columns), rate=_rate(survey))
+        for survey, columns in parts
     ]
     moving = [test for test in found if any(name in test.run.channels for name in MOTIONS)]
     others = [test for test in found if test not in moving and test.run.channels]
@@ -55,6 +56,20 @@ def tests_of(surveys: Sequence[Survey]) -> list[Guessed]:
     if all(test.kind == LOOP and test.run.load is not None for test in tests):
         return tests
     return [replace(test, run=_without_load(test.run)) for test in tests]
+
+
+def _like(first: Run, theirs: Sequence[Column], columns: Sequence[Column]) -> Run:
+    """The run of some columns: where they are named as those of the first run, each is what it is there."""
+    run = choose(columns)
+    layouts = [[(each.label, each.channel.unit) for each in both] for both in (theirs, columns)]
+    if layouts[0] != layouts[1] or set(run.channels) != set(first.channels):
+        return run
+    same = {name: columns[theirs.index(each.column)] for name, each in first.channels.items()}
+    if all(same[name] is each.column for name, each in run.channels.items()):
+        return run
+    left = [each.column for each in run.channels.values()] + [*run.left]
+    used = list(same.values())
+    return replace(run, channels=with_units(same), left=tuple(each for each in left if each not in used))
 
 
 def _without_load(run: Run) -> Run:
