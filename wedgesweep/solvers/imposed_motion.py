@@ -126,7 +126,7 @@ def _follow(p, places, motion, turns, step, deflected, out):
         if turned or turning or soon:
             y, early, later = _resolved(y, ends, turns[i], step, p)
             if turned or turning:
-                out[i] = 0.5 * (late + early)
+                out[i] = early if isnan(late) else 0.5 * (late + early)  # NaN: at the start
             late = later
         else:
             # States of effects see the mean motion between two samples.

@@ -186,10 +186,7 @@ class Recording:
         places = sign * (displacement + zeros[:, self._block])
         step = 1.0 / self.low_pass.rate
         motion = sign * velocity, sign * acceleration
-        found = imposed_motion.forces(rows, places, *motion, step, deflected)
-        # Where bristles turn over in the first interval, the force before it is not known.
-        found[:, 0] = np.where(np.isnan(found[:, 0]), found[:, 1], found[:, 0])
-        return found
+        return imposed_motion.forces(rows, places, *motion, step, deflected)
 
     @cached_property
     def _block(self) -> np.ndarray:
