@@ -14,6 +14,7 @@ from wedgesweep.diagnose.search import (
     Explained,
     Search,
     base_fit,
+    beside_stated,
     best_of,
     refit_base,
     single_fit,
@@ -53,6 +54,12 @@ def test_an_effect_is_fitted_beside_what_is_stated_where_the_base_model_needs_ot
     hidden = {"stribeck": {"peak": 0.0578, "velocity": 36.4e-3}}
     search, base, *_ = base_fit(Search.of(clean(effects=hidden, uncertain=stds), ("stribeck",)))
     assert base.fit.implausible
+    model = search.model("stribeck")
+    started = model.evaluate_all([model.start(None, x) for x in model.hypothesis.starts()[::5]])
+    ended = beside_stated(model, started)
+    for each in ended:
+        np.testing.assert_array_equal(each.point.x[model.size :], model.uncertain.mean)
+    assert min(each.chi2 for each in ended) < 0.5 * min(each.chi2 for each in started)
     assert single_fit(search, "stribeck", base.fit).explanation.fit.p > 1e-3
 
 

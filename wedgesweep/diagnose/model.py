@@ -29,13 +29,15 @@ class Model:
     """A hypothesis on the tests of some data, simulated to a tolerance.
 
     Its parameters x (k + u,) are the k of the hypothesis, then the u uncertain ones of the base model.
-    ``held``: index (or slice) and value of parameters that are not fitted.
+    ``held``: index (or slice) and value of parameters that are not fitted. ``as_stated``: whether
+    uncertain parameters are held at what is stated, and so no part of x.
     """
 
     data: FitData
     hypothesis: Hypothesis
     tolerance: float = TOLERANCE
     held: tuple[int | slice, float | np.ndarray] | None = None
+    as_stated: bool = False
 
     @property
     def size(self) -> int:
@@ -49,7 +51,8 @@ class Model:
     @cached_property
     def uncertain(self) -> UncertainNumbers:
         """Uncertain parameters (u,) of the base model with their priors; a candidate effect has no prior."""
-        stds = {k: s for k, s in self.data.uncertain.items() if k not in self.effects}
+        declared = {} if self.as_stated else self.data.uncertain
+        stds = {k: s for k, s in declared.items() if k not in self.effects}
         return uncertain_numbers(stds, self.data.model.effects)
 
     @cached_property

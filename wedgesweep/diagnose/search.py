@@ -295,8 +295,7 @@ def single_fit(search: Search, effect: str, base: Fit) -> SingleFit:
             fresh = [_with_own_numbers(rough, each) for each in fresh]
         evaluations = evaluations + fresh
         if implausible:
-            leading = _leading(fresh, SCHEDULE[0].entering)
-            evaluations = evaluations + [_nuisances_held(model, each) for each in leading]
+            evaluations = evaluations + beside_stated(model, fresh)
     schedule = SHORT_SCHEDULE if base.p >= POSSIBLE else SCHEDULE
     fit = best_of(model, evaluations, schedule)
     if _brings_alignment(data, effect):
@@ -345,6 +344,20 @@ def _nuisances_held(model: Model, evaluation: Evaluation) -> Evaluation:
     strict = model.on(model.data.held_as_stated())
     found = minimise(strict, strict.evaluate(evaluation.point), BRIEF)
     return model.evaluate(found.point)
+
+
+def beside_stated(model: Model, evaluations: Sequence[Evaluation]) -> list[Evaluation]:
+    """Ends of fits from the best evaluations while nuisance and uncertain parameters stay as stated.
+
+    Evaluated by the model, in which all of these are free.
+    """
+    strict = replace(model, data=model.data.held_as_stated(), as_stated=True)
+    leading = [each.point for each in _leading(evaluations, SCHEDULE[0].entering)]
+    found = strict.evaluate_all([replace(point, x=point.x[: model.size]) for point in leading])
+    for entering, iterations in SCHEDULE:
+        found = [minimise(strict, each, iterations).evaluation for each in _leading(found, entering)]
+    x = [np.r_[each.point.x, model.uncertain.mean] for each in found]
+    return model.evaluate_all([replace(each.point, x=own) for each, own in zip(found, x, strict=True)])
 
 
 def _leading(evaluations: Sequence[Evaluation], entering: int | None) -> list[Evaluation]:
