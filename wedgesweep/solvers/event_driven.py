@@ -15,7 +15,7 @@ from wedgesweep.hybrid.state import CHATTERING, FAILED, LOCKED, OK
 from wedgesweep.solvers.integrate import EVENTS_PER_PERIOD
 from wedgesweep.solvers.period_detection import LONGEST_PERIOD
 from wedgesweep.solvers.period_map import memory, prepared, run_periods
-from wedgesweep.solvers.shooting import copy, run_map, settling, shooting
+from wedgesweep.solvers.shooting import copy, run_map, settle_pointer, shooting
 from wedgesweep.solvers.trajectory import CaseError, Samples, TimedWindow, Trajectory, TransientWindow, Window
 from wedgesweep.systems import compact, state_count
 
@@ -126,7 +126,7 @@ def run_batch(
     cases = prepared(compact(parameters))
     # One of two loops: code of the other one need not be compiled.
     if settings.steady:
-        _run_to_steady_state(cases, parameters, settling(cases, room), settings, room, batch)
+        _run_to_steady_state(cases, parameters, settle_pointer(cases, room), settings, room, batch)
     else:
         _run_given_periods(cases, parameters, settle_periods, settings, room, batch)
 

@@ -12,7 +12,7 @@ from wedgesweep.hybrid.accumulators import clear
 from wedgesweep.hybrid.state import OK
 from wedgesweep.solvers.period_detection import LONGEST_PERIOD
 from wedgesweep.solvers.period_map import memory, prepared, run_case
-from wedgesweep.solvers.shooting import copy, known, run_map, settling, shooting
+from wedgesweep.solvers.shooting import copy, known, run_map, settle_pointer, shooting
 from wedgesweep.systems import grouped, state_count
 
 __all__ = ["OK", "Accuracy", "Periodic", "Warm", "at_rest", "joined", "respond", "sampled"]
@@ -134,7 +134,7 @@ def respond(
     motion = np.full((n, 2, samples_per_period), np.nan)
     for rows, records in grouped(parameters):
         cases = prepared(records)
-        _respond_all(cases, rows, settling(cases, room), accuracy, room, found, motion)
+        _respond_all(cases, rows, settle_pointer(cases, room), accuracy, room, found, motion)
     found.spectra[:] = np.fft.rfft(motion)[..., 1 : harmonics + 1] * (2.0 / samples_per_period)
     _sense_all(parameters, found.spectra.view(float).reshape(n, 2, harmonics, 2))
     return found

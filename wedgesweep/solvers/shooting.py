@@ -426,7 +426,7 @@ def _integrate(y, periods, jacobian, run, shooting):
 _shared: list[Pointer] = []
 
 
-def settling(cases: Any, memory: Any) -> Pointer:
+def settle_pointer(cases: Any, memory: Any) -> Pointer:
     """``_settle`` for all callers, whatever their cases: to compile it takes longer than to compile them.
 
     ``cases``, ``memory``: examples.

@@ -17,7 +17,7 @@ from wedgesweep.systems.suspension.set_valued import breakaway_input
 from wedgesweep.trigonometry import sine
 
 DOWN, UP = 2 * COLUMN, 2 * COLUMN + 1
-# Error of a series of the base acceleration (m/s^2) over the range in which the bolster rests.
+# Error of a series of the base acceleration, as a share of the range in which the bolster rests.
 ERROR = 1e-9
 
 
