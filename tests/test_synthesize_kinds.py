@@ -155,3 +155,18 @@ def test_the_lag_of_a_velocity_channel_is_that_of_the_motion_between_the_samples
     expected = -travel * omega * seen / (1.0 + (omega * lag) ** 2)
     assert found.displacement == pytest.approx(travel * np.cos(omega * t), abs=1e-6 * travel)
     assert found.velocity == pytest.approx(expected, abs=1e-5 * travel * omega)
+
+
+def test_a_test_is_made_at_its_temperature(tmp_path):
+    """At the reference it is the base model; 50 K above it a drift of -2 % per kelvin leaves no friction."""
+    plan = LOOP + "temperature_C = 20.0\n" + LOOP + "temperature_C = 70.0\n"
+    drift = "[effects.thermal_drift]\nshare_per_K = -0.02\n"
+    without = tmp_path / "without"
+    without.mkdir()
+    exact = ("--level", "0", "--sampling-hz", "100")
+    cold, hot = read(made(tmp_path, plan, drift, *exact)).tests
+    (nominal,) = read(made(without, LOOP, "", *exact)).tests
+    key = "effects.thermal_drift.temperature_C"
+    assert [test.model[key] for test in (cold, hot)] == [20.0, 70.0]
+    np.testing.assert_array_equal(cold.force, nominal.force)
+    assert np.ptp(cold.force - hot.force) / 2.0 == pytest.approx(0.3, rel=0.01)

@@ -21,6 +21,8 @@ UNITS = {
     "_m_per_s2": (1.0, natural_units.ACCELERATION),
     "_rad_per_s": (1.0, natural_units.FREQUENCY),
     "_mm_per_s": (1e-3, natural_units.VELOCITY),
+    "_per_K": (1.0, natural_units.SHARE),
+    "_C": (1.0, natural_units.SHARE),
     "_deg": (pi / 180.0, natural_units.SHARE),
     "_kg": (1.0, natural_units.Dimension(mass=1)),
     "_mm": (1e-3, natural_units.LENGTH),
@@ -31,7 +33,7 @@ UNITS = {
 # A rotation has an angle in place of a length, and so on; omega_n stays a frequency.
 UNITS = {other: (1.0, UNITS[ending][1]) for ending, (other, _) in ENDINGS.items()} | UNITS
 # Symbols that are not the letters of a key.
-SYMBOLS = {"_deg": "°", "_hz": "Hz"}
+SYMBOLS = {"_deg": "°", "_hz": "Hz", "_C": "°C", "_per_K": "1/K"}
 
 
 @dataclass(frozen=True)
@@ -78,14 +80,14 @@ class Quantity:
     @cached_property
     def unit(self) -> str:
         """Unit of the key, as CF writes it: N mm-1."""
-        up, *down = self.suffix.strip("_").split("_per_")
+        up, *down = self.suffix.split("_per_")
         above = [part for part in up.split("_") if part]
         below = [
-            f"{part.rstrip('23')}-{part.lstrip('Nmsradkghz') or 1}"
+            f"{part.rstrip('23')}-{part.lstrip('NmsradkghzK') or 1}"
             for each in down
             for part in each.split("_")
         ]
-        units = {"deg": "degree", "hz": "Hz"}
+        units = {"deg": "degree", "hz": "Hz", "C": "degC"}
         return " ".join(units.get(part, part) for part in (*above, *below)) or "1"
 
     @property

@@ -66,7 +66,7 @@ OF_DAMPERS = {
     "maxwell_presliding": Leading("force_N", 1e-3, 5.0),
 }
 # Candidates that no campaign hides: they came later than the sets on record, which stay as they are.
-NOT_HIDDEN = ("jamming", "input_gain", "force_gain", "channel_delay")
+NOT_HIDDEN = ("thermal_drift", "jamming", "input_gain", "force_gain", "channel_delay")
 LOGARITHMIC, UNIFORM, EITHER_SIGN, GROWING = "logarithmic", "uniform", "uniform, of either sign", "growing"
 # A growing parameter starts at this share of the drawn one.
 GROWTH = 1e-3

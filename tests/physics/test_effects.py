@@ -49,7 +49,7 @@ def test_the_declared_order_is_that_of_the_families():
         "excitation",
         "sensor",
     )
-    assert len(EFFECTS) == 36
+    assert len(EFFECTS) == 37
 
 
 @pytest.mark.parametrize("name", [name for name in OF_SUSPENSION if EFFECTS[name].searched])
@@ -373,3 +373,17 @@ def test_a_table_with_neutral_values_acts_no_more_than_none(name):
     off = {quantity.name: quantity.neutral * quantity.factor for quantity in EFFECTS[name].quantities}
     assert acting({name: off}) == {}
     assert acting({name: mild(name)}) == {name: mild(name)}
+
+
+def test_friction_of_one_temperature_is_another_level_of_friction():
+    """Coefficients are linear in temperature, nominal at the reference, and never negative."""
+    share, reference = -0.004, 45.0
+    for temperature, scale in ((45.0, 1.0), (60.0, 0.94), (20.0, 1.1), (400.0, 0.0)):
+        drift = {"share": share, "temperature": temperature, "reference": reference}
+        drifted, level = with_effect("exponential", "thermal_drift", drift), {"scale": scale}
+        expected = with_effect("exponential", "friction_level", level)
+        np.testing.assert_allclose(
+            structured_to_unstructured(drifted), structured_to_unstructured(expected), rtol=1e-12
+        )
+    nominal = with_effect("exponential", "thermal_drift", {**drift, "share": 0.0})
+    assert nominal.tobytes() == parameters.record("exponential", 0.8e-3, 0.6 * OMEGA_N).tobytes()

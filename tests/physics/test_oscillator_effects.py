@@ -53,6 +53,7 @@ STRENGTHS = {
     "displacement_gain": {"scale": 1.02},
     "input_gain": {"scale": 1.05},
     "load_dependent_friction": {"exponent": 0.2, "reference": 3.0},
+    "thermal_drift": {"share": -0.004, "temperature": 60.0, "reference": 20.0},
 }
 # Those on what lies between mass and base are also tried where the mass rubs on something else.
 SENSORS = ("velocity_lag", "force_gain", "channel_delay")

@@ -372,7 +372,23 @@ def excluded_effects(measurement: Measurement) -> dict[str, str]:
         loads = [measurement.model_of(test).oscillator["normal_force"] for test in measurement.tests]
         differ = max(loads) > alike * min(loads)
     contained = [name for name in acting(model.effects) if name not in SCALES]
-    return model.excluded_effects(differ, measurement.kinds == (LOOP,)) | dict.fromkeys(contained, IN_BASE)
+    return (
+        model.excluded_effects(differ, measurement.kinds == (LOOP,))
+        | _hidden_by_circumstance(measurement)
+        | dict.fromkeys(contained, IN_BASE)
+    )
+
+
+def _hidden_by_circumstance(measurement: Measurement) -> dict[str, str]:
+    """Effects that follow a number which is the same in all tests, and why they do not show."""
+    found = {}
+    models = [measurement.model_of(test) for test in measurement.tests]
+    for name, effect in EFFECTS.items():
+        if (stated := effect.circumstance) is not None:
+            values = {model.effects.get(name, effect.off)[stated.name] for model in models}
+            if len(values) == 1:
+                found[name] = f"shows only where {stated.key} differs from test to test"
+    return found
 
 
 def refit_cause(

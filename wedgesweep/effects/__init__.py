@@ -15,7 +15,7 @@ Numbers = Mapping[str, Mapping[str, float]]
 NAMES = (
     *("bolster_stiffness", "wedge_stiffness", "bolster_mass", "preload", "friction_level"),
     *("stribeck", "presliding", "ageing", "directional_friction", "load_dependent_friction"),
-    "position_friction",
+    *("position_friction", "thermal_drift"),
     *("cross_slip", "column_compliance"),
     lift_off.NAME,
     *("jamming", "damper_play", "series_compliance"),
@@ -57,13 +57,27 @@ def of_system(system: str) -> tuple[str, ...]:
 
 
 def merge(own: Numbers, added: Numbers) -> dict[str, dict[str, float]]:
-    """Numbers of effects with others beside them, or in their place; what scales a number scales it again."""
+    """Numbers of effects with others beside them, or in their place; what scales a number scales it again.
+
+    The circumstance of an effect (the temperature of a test) stays what it is.
+    """
     scaled = {
         name: {"scale": own.get(name, {}).get("scale", 1.0) * added[name]["scale"]}
         for name in SCALES
         if name in added
     }
-    return {name: dict(numbers) for name, numbers in {**own, **added, **scaled}.items()}
+    return {
+        name: {**numbers, **_circumstances(name, own.get(name, {}))}
+        for name, numbers in {**own, **added, **scaled}.items()
+    }
+
+
+def _circumstances(name: str, numbers: Mapping[str, float]) -> dict[str, float]:
+    """Of an effect's numbers, by name or by key, those of its circumstance: no fit looks for them."""
+    if EFFECTS[name].circumstance is None:
+        return {}
+    stated = {each for q in EFFECTS[name].quantities if q.search is None for each in (q.key, q.name)}
+    return {key: value for key, value in numbers.items() if key in stated}
 
 
 def confounded(names: Sequence[str]) -> bool:

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from wedgesweep.effects import thermal_drift
 from wedgesweep.measured.cycles import slope_of_means
 from wedgesweep.measured.declarations import (
     AMPLITUDE,
@@ -86,7 +87,7 @@ def build_record(
         velocity=columns.get("velocity"),
         acceleration=columns.get("acceleration"),
         input=columns.get(INPUT),
-        model=given.get("model", {}),
+        model=thermal_drift.of_test(given) | given.get("model", {}),
         kind=given.get("kind", STEADY),
         force=columns.get("force"),
         cutoff=given.get("lowpass_hz"),

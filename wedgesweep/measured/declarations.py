@@ -8,7 +8,7 @@ from typing import Any
 from wedgesweep import toml
 from wedgesweep.config.keys import Choice, Flag, Key, Number, Text, Unit, Whole
 from wedgesweep.config.tables import Table, TableList, table
-from wedgesweep.effects import EFFECTS, OF_THE_MODEL, SCALES
+from wedgesweep.effects import EFFECTS, OF_THE_MODEL, SCALES, thermal_drift
 from wedgesweep.hints import show
 from wedgesweep.quantity import Quantity
 from wedgesweep.readers.dialect import DECIMALS, DELIMITERS, THOUSANDS
@@ -311,6 +311,7 @@ TEST = table(
         *map(_override, COLUMNS.keys.values()),
         optional=True,
     ),
+    Number.of(thermal_drift.TEMPERATURE, default=None, optional=True, example=20.0),
     Overrides("model", "numbers of the model in this test", optional=True),
     kind=RecordTable,
 )

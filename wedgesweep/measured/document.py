@@ -10,6 +10,7 @@ from wedgesweep import rotation, toml
 from wedgesweep.config import Config
 from wedgesweep.config.turned import Turned
 from wedgesweep.effects.base import OSCILLATOR
+from wedgesweep.effects.thermal_drift import TEMPERATURE
 from wedgesweep.errors import ConfigError, InputError
 from wedgesweep.files import missing
 from wedgesweep.hints import shortened
@@ -128,8 +129,14 @@ def _at(fault: str) -> str:
 
 def _override_faults(path: Path, measurement: dict[str, Any], config: Config) -> list[str]:
     """Numbers of single tests that the model does not have, or that are out of range."""
-    faults: list[str] = []
-    for i, given in enumerate(measurement.get("test", ())):
+    tests, key = measurement.get("test", ()), TEMPERATURE.key
+    # A test without one would be simulated at the reference.
+    without = [i for i, given in enumerate(tests) if key not in given]
+    missing = f"{key}: missing; other tests state it, and this one must"
+    faults = [
+        f"{path}: measurement.test[{i}].{missing}" for i in (without if len(without) < len(tests) else ())
+    ]
+    for i, given in enumerate(tests):
         try:
             with_numbers(config, given.get("model", {}), f"{path}: measurement.test[{i}].model")
         except ConfigError as error:

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from wedgesweep.config import Config, axes, from_document, load
+from wedgesweep.effects import EFFECTS, of_system
 from wedgesweep.effects.base import OSCILLATOR
 from wedgesweep.errors import ConfigError
 from wedgesweep.hints import hint
@@ -40,7 +41,7 @@ def with_numbers(model: Config, numbers: Mapping[str, float], source: str = "mod
     ConfigError
         If a name is unknown or a number is out of range.
     """
-    known = _numbers(model.written)
+    known = [*_numbers(model.written), *_circumstances(model.system)]
     unknown = [name for name in numbers if name not in known]
     if unknown:
         problem = "the model has no such number"
@@ -49,6 +50,12 @@ def with_numbers(model: Config, numbers: Mapping[str, float], source: str = "mod
     if model.system != OSCILLATOR:
         return changed
     return replace(changed, nominal_load=model.oscillator["normal_force"])
+
+
+def _circumstances(system: str) -> list[str]:
+    """Names of what tests may state of effects, whether the model has these or not."""
+    found = [(name, EFFECTS[name].circumstance) for name in of_system(system)]
+    return [f"effects.{name}.{each.key}" for name, each in found if each is not None]
 
 
 def _numbers(table: Mapping[str, Any], prefix: str = "") -> list[str]:

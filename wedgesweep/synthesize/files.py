@@ -11,6 +11,7 @@ import numpy as np
 
 from wedgesweep import rotation, toml
 from wedgesweep.config import Config
+from wedgesweep.effects.thermal_drift import TEMPERATURE
 from wedgesweep.errors import InputError
 from wedgesweep.files import beside
 from wedgesweep.measured.declarations import LOOP, STEADY, TRANSIENT
@@ -79,6 +80,8 @@ def measured(title: str, config: Config, plan: Plan, options: Options) -> dict[s
     tests = []
     for i, test in enumerate(plan.tests):
         keys: dict[str, Any] = {"file": f"test-{i:02d}.csv"}
+        if test.temperature_C is not None:
+            keys[TEMPERATURE.key] = test.temperature_C
         if test.kind != STEADY:
             undriven = options.record_input is not None and test.kind == TRANSIENT and not test.driven
             tests.append({**keys, "kind": test.kind, **({"undriven": True} if undriven else {})})

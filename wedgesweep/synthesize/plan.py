@@ -10,6 +10,7 @@ from wedgesweep import rotation, toml
 from wedgesweep.config.keys import Choice, Flag, Number
 from wedgesweep.config.tables import TableList, table
 from wedgesweep.config.turned import Turned
+from wedgesweep.effects.thermal_drift import TEMPERATURE
 from wedgesweep.errors import InputError
 from wedgesweep.measured.declarations import (
     AMPLITUDE,
@@ -63,6 +64,7 @@ ROOT = table(
             Number.of(TO, optional=True),
             Number.of(RELEASE),
             Number.of(THROWN),
+            Number.of(TEMPERATURE, default=None, optional=True, example=20.0),
             KNOWN,
         ),
     ),
@@ -87,6 +89,7 @@ class PlannedTest:
     to_hz: float | None = None
     release_mm: float = 0.0
     release_mm_per_s: float = 0.0
+    temperature_C: float | None = None
 
     @property
     def driven(self) -> bool:
@@ -165,4 +168,5 @@ def _planned(given: Mapping[str, Any]) -> PlannedTest:
         given.get("to_hz"),
         given["release_mm"],
         given["release_mm_per_s"],
+        given.get(TEMPERATURE.key),
     )

@@ -57,7 +57,7 @@ def _of_steady(truth: Truth, test: TrueTest, options: Options) -> Table:
     lost = int(options.noise == "differentiated")
     record, clock = truth.record(test), test.clock(options.periods, 2 * lost)
     repeats, with_load = STRAY not in truth.config.effects, options.normal_force is not None
-    motion = steady(record, clock, options.settle_periods, repeats, truth.effects, with_load)
+    motion = steady(record, clock, options.settle_periods, repeats, truth.effects_in(test), with_load)
     deflection = truth.config.deflection(2.0 * pi * test.plan.frequency_hz)
     if np.ptp(motion.displacement) < STUCK * deflection * record["input"]["amplitude"][0]:
         reason = "the mass sticks all the time and there is nothing to measure; raise the amplitude"
@@ -104,7 +104,9 @@ def _base_motion(record: np.ndarray, time: np.ndarray, quantity: str) -> np.ndar
 
 def _of_transient(truth: Truth, test: TrueTest, options: Options) -> Table:
     rate = sampling_rate(test, options)
-    found = transients.transient(truth.config, truth.law, truth.effects, test.plan, rate, test.random)
+    found = transients.transient(
+        truth.config, truth.law, truth.effects_in(test), test.plan, rate, test.random
+    )
     displacement, velocity = _with_noise(found.displacement, found.velocity, test, options, 1.0 / rate)
     time, given = np.arange(displacement.size) / rate, found.input
     if given is not None:
@@ -116,7 +118,7 @@ def _of_transient(truth: Truth, test: TrueTest, options: Options) -> Table:
 
 def _of_loop(truth: Truth, test: TrueTest, options: Options) -> Table:
     rate, level = sampling_rate(test, options), options.level
-    displacement, force = loop(truth.config, truth.law, truth.effects, test.plan, rate)
+    displacement, force = loop(truth.config, truth.law, truth.effects_in(test), test.plan, rate)
     force = force + (level * test.random.normal(size=force.size) + test.offset) * force.std()
     displacement = displacement + noise.of(displacement, DISPLACEMENT_NOISE * level, test.random)
     return Table(np.arange(force.size) / rate, 1e3 * displacement, None, None, force)

@@ -7,7 +7,7 @@ from math import ceil, exp, pi
 import numpy as np
 
 from wedgesweep.config import Config
-from wedgesweep.effects import merge
+from wedgesweep.effects import merge, thermal_drift
 from wedgesweep.natural_units import FREQUENCY
 from wedgesweep.synthesize.motion import Clock
 from wedgesweep.synthesize.plan import Plan, PlannedTest
@@ -57,10 +57,20 @@ class Truth:
         """Effects of the config with the uncertain numbers at their true values, in SI units."""
         return merge(self.config.effects, self.uncertain.values(self.x))
 
+    def effects_in(self, test: TrueTest) -> dict[str, dict[str, float]]:
+        """The effects at the temperature of a test, in SI units."""
+        found, drift, stated = self.effects, thermal_drift.EFFECT.name, test.plan.temperature_C
+        if drift in found and stated is not None:
+            found[drift][thermal_drift.TEMPERATURE.name] = stated
+        return found
+
     def record(self, test: TrueTest) -> np.ndarray:
         """Parameters of a test for the solver, shape (1,)."""
-        amplitude = test.amplitude * self.config.amplitude_unit.factor
-        record = self.config.record_with(self.effects, self.law, amplitude, 2.0 * pi * test.plan.frequency_hz)
+        amplitude, omega = (
+            test.amplitude * self.config.amplitude_unit.factor,
+            2.0 * pi * test.plan.frequency_hz,
+        )
+        record = self.config.record_with(self.effects_in(test), self.law, amplitude, omega)
         if test.stray_phase_deg is not None:
             record[STRAY]["phase"] = np.radians(test.stray_phase_deg)
         return record

@@ -61,9 +61,9 @@ OF_BASE = "stray_vibration"
 OF_SPRING = ("bolster_stiffness", "asymmetric_spring", "backlash")
 # Friction beside that of the normal force, and effects on the latter.
 LATERAL = "guide_friction"
-# The first one scales its coefficients, the others change the law.
+# The first two scale its coefficients, the others change the law.
 OF_FRICTION = (
-    *("friction_level", "stribeck", "presliding", "ageing", "directional_friction"),
+    *("friction_level", "thermal_drift", "stribeck", "presliding", "ageing", "directional_friction"),
     "position_friction",
 )
 # Those that need a rod between the mass and what damps it, and those of them behind which all damping is.
@@ -224,7 +224,7 @@ def friction_decay(p: np.void) -> float:
 
 def _changes_friction(p: np.void) -> bool:
     """Whether an effect or bristles change the law of friction."""
-    return bool(records.acting(p, (*OF_FRICTION[1:], *OF_ROD))) or bool(p[bristles.NAME]["stiffness"])
+    return bool(records.acting(p, (*OF_FRICTION[2:], *OF_ROD))) or bool(p[bristles.NAME]["stiffness"])
 
 
 def _breakaway_force(p: np.void) -> float:
