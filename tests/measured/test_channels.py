@@ -47,6 +47,16 @@ def test_an_absolute_acceleration_alone_is_a_response(tmp_path):
     np.testing.assert_allclose(found.tests[0].acceleration, 1e-3 * vibration()[1], rtol=1e-5)
 
 
+def test_the_kind_of_the_measurement_is_that_of_tests_that_state_none(tmp_path):
+    free = MEASURED.replace("frequency_hz = 20.0\namplitude_mm = 0.3\namplitude_std = 0.01\n", "")
+    text = free.replace('title = "bench"', 'kind = "transient"\nundriven = true')
+    assert "measurement.undriven" in problems(tmp_path, text)
+    loop = free.replace('title = "bench"', 'kind = "loop"')
+    assert "measurement.columns.force: missing" in problems(tmp_path, loop)
+    own = loop.replace("[[measurement.test]]", '[[measurement.test]]\nkind = "steady"')
+    assert read(tmp_path, own).tests[0].kind == "steady"
+
+
 def test_a_delay_of_a_response_may_be_fitted_beside_one_force_only():
     """Of displacement against the force of loops, also beside free decays; not against a velocity."""
     late, force = {"delay_std_ms": 1.0}, {"force": {}}

@@ -36,6 +36,7 @@ def measured(
         "[measurement]",
         f"title = {toml.inline(path.absolute().parent.name or 'measurement')}",
         f"model = {toml.inline(_relative(model, path))}",
+        f"kind = {toml.inline(first.kind)}  # {first.reason}",
         *_rate(first),
         "",
         "[measurement.columns]",
@@ -133,7 +134,8 @@ def _test(test: Guessed, first: Guessed, path: Path) -> Iterator[str]:
     """Lines of a test; what differs from the first one is stated here."""
     yield "[[measurement.test]]"
     yield f"file = {toml.inline(_relative(test.file, path))}"
-    yield f"kind = {toml.inline(test.kind)}  # {test.reason}"
+    if test.kind != first.kind:
+        yield f"kind = {toml.inline(test.kind)}  # {test.reason}"
     if test.part.start is not None:
         yield f"from_s = {test.part.start!r}"
     if test.part.end is not None:

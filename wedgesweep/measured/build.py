@@ -73,7 +73,7 @@ def build_record(
     columns, time, thinned = _limited(given, columns, time, frequency)
     if (known := columns.pop(KNOWN_FORCE, None)) is not None:
         # Only the sum with the force that is measured, or drives the mass, acts.
-        beside = "force" if given.get("kind") == LOOP else INPUT
+        beside = "force" if given["kind"] == LOOP else INPUT
         columns[beside] = columns[beside] + known
     amplitudes = [given[each.key] * each.factor for each in (AMPLITUDE, FORCE_AMPLITUDE) if each.key in given]
     test = TestRecord(
@@ -88,7 +88,7 @@ def build_record(
         acceleration=columns.get("acceleration"),
         input=columns.get(INPUT),
         model=thermal_drift.of_test(given) | given.get("model", {}),
-        kind=given.get("kind", STEADY),
+        kind=given["kind"],
         force=columns.get("force"),
         cutoff=given.get("lowpass_hz"),
         recorded_s=recorded if used < recorded else None,
@@ -138,7 +138,7 @@ def _size_faults(signals: Signals) -> Iterator[str]:
 
 def _frequency(given: Mapping[str, Any], columns: Mapping[str, np.ndarray], time: np.ndarray) -> float:
     """Frequency (Hz) of a steady record where its drift or its length matters, else NaN."""
-    if given.get("kind", STEADY) != STEADY or not (given.get("detrend") or time.size > MOST_SAMPLES):
+    if given["kind"] != STEADY or not (given.get("detrend") or time.size > MOST_SAMPLES):
         return nan
     leading = columns[INPUT] if INPUT in columns else next(iter(columns.values()))
     stated: float | None = given.get("frequency_hz")
@@ -156,7 +156,7 @@ def _limited(
     given: Mapping[str, Any], columns: dict[str, np.ndarray], time: np.ndarray, frequency: float
 ) -> tuple[dict[str, np.ndarray], np.ndarray, str]:
     """A record of as many samples as its kind needs, the times, and a remark if samples were left out."""
-    kind = given.get("kind", STEADY)
+    kind = given["kind"]
     if kind == STEADY and time.size > MOST_SAMPLES:
         return shortened(columns, time, frequency, MOST_SAMPLES)
     if kind == TRANSIENT and INPUT not in columns and time.size > MOST_OF_FREE:

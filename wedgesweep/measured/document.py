@@ -109,7 +109,7 @@ def _stated_model(path: Path, measurement: Mapping[str, Any], problems: list[str
 def _columns_by_kind(measurement: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
     """The declared channels of each kind of test that there is."""
     columns = measurement.get("columns", {})
-    found = dict.fromkeys(each.get("kind", STEADY) for each in measurement.get("test", ())) or {STEADY: None}
+    found = dict.fromkeys(each["kind"] for each in measurement.get("test", ())) or {STEADY: None}
     return {kind: columns_of(columns, kind, len(found) == 1) for kind in found}
 
 
@@ -155,6 +155,9 @@ def _document(path: Path, model: Path | None, problems: list[str]) -> dict[str, 
     root = turned.table(ROOT) if _turns(model or path.parent / _named_model(given)) else ROOT
     document: dict[str, Any] = turned.back(root.read(given, "", found))
     problems.extend(f"{path}: {problem}" for problem in found)
+    measurement = document.get("measurement", {})
+    for test in measurement.get("test", ()):
+        test.setdefault("kind", measurement.get("kind", STEADY))
     return document
 
 
@@ -198,7 +201,7 @@ def _tests(
         number = f"#{len(earlier) + 1}" if earlier else ""
         problems.extend(f"{at}.{fault}" for fault in kinds.repeat_faults(given, before))
         before.append({**given, "name": f"{given['file']}{number}"})
-        own = by_kind[given.get("kind", STEADY)]
+        own = by_kind[given["kind"]]
         contact = model is not None and model.system == OSCILLATOR and NORMAL_FORCE in columns
         if contact:
             own = own | {NORMAL_FORCE: columns[NORMAL_FORCE]}

@@ -45,7 +45,7 @@ def column_faults(columns: Mapping[str, Any], kind: str) -> list[str]:
 
 def key_faults(given: Mapping[str, Any]) -> list[str]:
     """Faults of the keys of a test that do not go with its kind, as "key: fault"."""
-    kind = given.get("kind", STEADY)
+    kind = given["kind"]
     wrong = [] if kind == STEADY else [key for key in OF_A_SINE if key in given]
     wrong += [] if kind == LOOP else [key for key in OF_A_LOOP if key in given]
     wrong += [] if kind == TRANSIENT else [key for key in OF_A_TRANSIENT if given.get(key)]
@@ -63,7 +63,7 @@ def repeat_faults(given: Mapping[str, Any], before: Sequence[Mapping[str, Any]])
         return []
     for other in before:
         if other.get("name") == first and "repeat_of" not in other:
-            same = other.get("kind", STEADY) == given.get("kind", STEADY)
+            same = other["kind"] == given["kind"]
             return [] if same else [f"repeat_of: {show(first)} is of another kind; a repeat is of the same"]
     fault = "is not the file of an earlier test that repeats none; name that one"
     return [f"repeat_of: {show(first)} {fault}"]
