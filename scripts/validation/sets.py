@@ -38,6 +38,7 @@ ALL = {
     "constant": Kind(12, STRONG),  # one effect on a bench with constant damping
     "load": Kind(10, WEAK),  # more preload or friction, in four tests that record the load of the column
     "no-load": Kind(10, WEAK),  # the same without that channel
+    "warm": Kind(40),  # thermal drift, a neighbour of it or none, in loops at several temperatures
 }
 KINDS = tuple(ALL)
 SHARED = {"added": "poor", "no-load": "load"}

@@ -1,9 +1,9 @@
 """Sets of tests that are not all steady: releases and sweeps, hysteresis loops, and several kinds together.
 
-Oscillators and suspensions of any size take turns; those of kind ``damper`` are dampers. Each hides one
-effect, or none in every fifth set. It is as strong as is needed for a drawn change of the response; sets
-whose excess is too small for a name all the same count as weak. A set of kind ``worse`` is a transient, loop
-or mixed set whose files ``worse.py`` makes worse.
+Oscillators and suspensions of any size take turns; those of kind ``damper`` and ``warm`` are dampers. Each
+hides one effect, or none in every fifth set. It is as strong as is needed for a drawn change of the response;
+sets whose excess is too small for a name all the same count as weak. A set of kind ``worse`` is a transient,
+loop or mixed set whose files ``worse.py`` makes worse.
 """
 
 from collections.abc import Callable
@@ -18,6 +18,7 @@ from validation.sets import DataSet
 from validation.strength import reach
 from wedgesweep.config import from_document
 from wedgesweep.effects import EFFECTS
+from wedgesweep.effects.thermal_drift import at_temperature
 from wedgesweep.natural_units import FREQUENCY, LENGTH
 from wedgesweep.synthesize import plan
 from wedgesweep.synthesize.motion import NoMotion
@@ -26,7 +27,8 @@ from wedgesweep.synthesize.plan import PlannedTest
 from wedgesweep.synthesize.tables import loop
 from wedgesweep.synthesize.transients import transient
 
-TRANSIENT, LOOP, MIXED, WORSE, DAMPER = TIME_KINDS = ("transient", "loop", "mixed", "worse", "damper")
+TIME_KINDS = ("transient", "loop", "mixed", "worse", "damper", "warm")
+TRANSIENT, LOOP, MIXED, WORSE, DAMPER, WARM = TIME_KINDS
 MADE_WORSE = (TRANSIENT, LOOP, MIXED)
 LAWS = ("coulomb", "static-dynamic")
 # Effects of a sine as an input, and those that a loop cannot show.
@@ -47,6 +49,12 @@ NEIGHBOURS = (
     *("viscous_damping", "directional_damping", "quadratic_drag"),
     *("presliding", "damper_play", "friction_level"),
 )
+HIDDEN_IN = {
+    DAMPER: (*ranges.OF_DAMPERS, *NEIGHBOURS),
+    WARM: (*ranges.OF_TEMPERATURE, *NEIGHBOURS),
+}
+# Temperatures (deg C) of warm tests, which rise neither with frequency nor with amplitude.
+TEMPERATURES = (65.0, 20.0, 35.0, 50.0)
 # Its coefficients of friction.
 STATIC, DYNAMIC = 0.36, 0.3
 # Largest motion (mm) of a mass (kg), noise over the rms of a channel.
@@ -93,7 +101,7 @@ def _drawn(one: DataSet, attempt: int) -> dict[str, Any] | None:
     """Documents of a set; None if its effect cannot be as strong as is wanted."""
     random = one.random(attempt)
     law = LAWS[one.index % len(LAWS)]
-    if one.kind == DAMPER:
+    if one.kind in HIDDEN_IN:
         drawn = _oscillator(random, *OF_DAMPER)
     else:
         drawn = _suspension(random) if one.index // 2 % 2 else _oscillator(random)
@@ -107,7 +115,7 @@ def _drawn(one: DataSet, attempt: int) -> dict[str, Any] | None:
     hidden: dict[str, dict[str, float]] = {}
     if one.index % CLEAN_EACH != CLEAN_EACH - 1:
         left_out = NOT_IN_LOOPS if kind == LOOP else OF_A_SINE
-        among = (*ranges.OF_DAMPERS, *NEIGHBOURS) if kind == DAMPER else ranges.LEADING
+        among = HIDDEN_IN.get(kind, ranges.LEADING)
         known = set(rig.possible_effects).intersection(among).difference(left_out)
         possible = [name for name in EFFECTS if name in known]
         order = np.random.default_rng([one.seed, 101]).permutation(len(possible))
@@ -158,7 +166,8 @@ def _response(
     config = from_document(rig.document(law, effects))
     try:
         if test.kind == LOOP:
-            return loop(config, law, config.effects, test, sampling_hz)[1][None]
+            acting = at_temperature(config.effects, test.temperature_C)
+            return loop(config, law, acting, test, sampling_hz)[1][None]
         made = transient(config, law, config.effects, test, sampling_hz, np.random.default_rng(0))
     except NoMotion:
         return None
@@ -222,6 +231,14 @@ def _loops(drawn: Drawn) -> list[dict[str, Any]]:
     ]
 
 
+def _warm(drawn: Drawn) -> list[dict[str, Any]]:
+    tests = [
+        *_loops(drawn),
+        *({**each, "amplitude_mm": 0.7 * each["amplitude_mm"]} for each in _loops(drawn)),
+    ]
+    return [{**each, "temperature_C": t} for each, t in zip(tests, TEMPERATURES, strict=True)]
+
+
 def _mixed(drawn: Drawn) -> list[dict[str, Any]]:
     steady = [
         {"frequency_hz": share * drawn.frequency, "amplitude_mm": drawn.base, "amplitude_std": 0.005}
@@ -230,4 +247,4 @@ def _mixed(drawn: Drawn) -> list[dict[str, Any]]:
     return [*steady, *_releases(drawn), _loops(drawn)[0]]
 
 
-TESTS = {TRANSIENT: _transients, LOOP: _loops, MIXED: _mixed, DAMPER: _loops}
+TESTS = {TRANSIENT: _transients, LOOP: _loops, MIXED: _mixed, DAMPER: _loops, WARM: _warm}

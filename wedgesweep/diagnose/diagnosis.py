@@ -29,6 +29,7 @@ from wedgesweep.diagnose.loop.loop_data import loop_data
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.next_test.recommend import NextTest, recommend
 from wedgesweep.diagnose.profile_likelihood import profile_likelihood
+from wedgesweep.diagnose.repeats import Spread, spread_of
 from wedgesweep.diagnose.score_test import Score
 from wedgesweep.diagnose.search import LEADING, Explained, Search, base_fit, quiet, single_fits
 from wedgesweep.diagnose.stages import PAIRS, REFINEMENT, taken
@@ -67,7 +68,8 @@ class Diagnosis:
     fitted at all. ``unfinished``: steps without a result, with the reason; ``failed``: effects whose fits
     raised an error; ``ended``: the interrupt or time limit that ended the diagnosis early. ``changes``: what
     each stage changed; ``without``: stages that were left out; ``empirical``: the force that is missing where
-    no name explains it; ``by_record``: effects whose numbers differ from record to record.
+    no name explains it; ``by_record``: effects whose numbers differ from record to record. ``spread``: that
+    between repeats of a test, which counts as an error that a model may have.
     """
 
     measurement: Measurement
@@ -90,6 +92,7 @@ class Diagnosis:
     without: tuple[str, ...] = ()
     empirical: EmpiricalForce | None = None
     by_record: tuple[ByRecord, ...] = ()
+    spread: Spread | None = None
 
     @property
     def best(self) -> Best:
@@ -232,11 +235,14 @@ def diagnose(
     """
     force_wanted = effects is not None and FORCE in effects
     effects = _candidates(candidates() if effects is None else effects, measurement, progress)
-    explained = base_fit(Search.of(data_of(measurement), effects, threads, progress))
+    spread = spread_of(measurement)
+    allowed = measurement if spread is None else spread.allowed_in(measurement)
+    explained = base_fit(Search.of(data_of(allowed), effects, threads, progress))
     left_out = {*explained.search.without, *(() if calibrated else ("calibration",))}
     steps = {name: step for name, step in STEPS.items() if name not in left_out}
     course = Course(measurement, explained, tuple(steps), reached)
     course.empirical_force = force_wanted
+    course.found = replace(course.found, spread=spread)
     try:
         reached(course.found)
         with work.limited(time_used):

@@ -45,3 +45,13 @@ def of_test(keys: Mapping[str, Any]) -> dict[str, float]:
     """The temperature among the keys of a test, as a number of its model."""
     key = TEMPERATURE.key
     return {f"effects.{EFFECT.name}.{key}": keys[key]} if key in keys else {}
+
+
+def at_temperature(
+    effects: Mapping[str, Mapping[str, float]], temperature: float | None
+) -> dict[str, dict[str, float]]:
+    """Numbers of effects (SI) with the drift, if it is one of them, at a temperature if that is stated."""
+    found = {name: dict(numbers) for name, numbers in effects.items()}
+    if EFFECT.name in found and temperature is not None:
+        found[EFFECT.name][TEMPERATURE.name] = temperature
+    return found

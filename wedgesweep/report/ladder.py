@@ -34,9 +34,36 @@ def section(result: DiagnosisResult, draw: InlineFigures) -> Markup:
         html.paragraph(" ".join([*(f"{one[0].upper()}{one[1:]}." for one in clauses(result)), READING])),
         draw("ladder"),
         html.table("The most accurate explanations", HEAD, rows, 2),
+        html.paragraph(f"{said[0].upper()}{said[1:]}.") if (said := parts(result)) else Markup(),
         _added(levels[3:]),
         _record_by_record(result),
         html.paragraph(f"Noise floor: {phrases.accuracy(floor)}.") if floor else Markup(),
+    )
+
+
+def parts(result: DiagnosisResult) -> str:
+    """What of the error is noise, what differs between repeats, and what is left to models; or empty."""
+    repeats, levels = result.document.get("repeats"), levels_of(result)
+    if not repeats or not levels:
+        return ""
+    low, high = map(formatting.error, repeats["ci95"])
+    floor = phrases.accuracy(result.document["method"].get("noise_floor"))
+    if not repeats["ci95"][0]:
+        return f"repeats of a test differ by no more than noise (by less than {high} of the response)"
+    if not repeats["counts"]:
+        return (
+            f"tests alike differ by {formatting.error(repeats['share'])} of the response; state what differs "
+            "(temperature_C, or numbers of the model) in each of them"
+        )
+    left = [
+        f"{phrases.combination(level['effects'])} {formatting.error(level['model_share'])}"
+        for level in levels
+        if level.get("model_share") is not None
+    ]
+    return (
+        f"of the error, noise makes {floor} of the response, what differs between repeats of a test "
+        f"{formatting.error(repeats['share'])} (95 % interval {low} to {high}), and the rest is left to the "
+        f"model ({', '.join(left)}); no cause is to explain what differs between repeats"
     )
 
 

@@ -14,7 +14,8 @@ NAMES_LISTED = 3
 def sentence(result: DiagnosisResult) -> str:
     """Return the sentence as plain text; each verdict has its template."""
     answer = TEMPLATES[result.verdict](result).removesuffix(".")
-    whole = answer + _never_steady(result) + _untried(result) + unfinished(result) + "."
+    repeats = f"; {parts}" if (parts := ladder.parts(result)) else ""
+    whole = answer + repeats + _never_steady(result) + _untried(result) + unfinished(result) + "."
     return rotation.prose(whole) if phrases.turns(result.document) else whole
 
 

@@ -7,7 +7,8 @@ from math import ceil, exp, pi
 import numpy as np
 
 from wedgesweep.config import Config
-from wedgesweep.effects import merge, thermal_drift
+from wedgesweep.effects import merge
+from wedgesweep.effects.thermal_drift import at_temperature
 from wedgesweep.natural_units import FREQUENCY
 from wedgesweep.synthesize.motion import Clock
 from wedgesweep.synthesize.plan import Plan, PlannedTest
@@ -59,10 +60,7 @@ class Truth:
 
     def effects_in(self, test: TrueTest) -> dict[str, dict[str, float]]:
         """The effects at the temperature of a test, in SI units."""
-        found, drift, stated = self.effects, thermal_drift.EFFECT.name, test.plan.temperature_C
-        if drift in found and stated is not None:
-            found[drift][thermal_drift.TEMPERATURE.name] = stated
-        return found
+        return at_temperature(self.effects, test.plan.temperature_C)
 
     def record(self, test: TrueTest) -> np.ndarray:
         """Parameters of a test for the solver, shape (1,)."""

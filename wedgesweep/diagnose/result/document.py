@@ -16,6 +16,7 @@ from wedgesweep.diagnose.explanation import ADEQUATE, POSSIBLE, Explanation, par
 from wedgesweep.diagnose.ladder import REFINED, ByRecord, Level, Rated
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.next_test.recommend import SEPARATED, NextTest
+from wedgesweep.diagnose.repeats import Spread
 from wedgesweep.diagnose.result import missing_force
 from wedgesweep.diagnose.result.estimates import finite, parameters, uncertain, widen
 from wedgesweep.diagnose.verdict import GAP, LARGER, Finding, p_where_it_shows
@@ -45,7 +46,8 @@ def document(found: Diagnosis) -> dict[str, Any]:
         "not_testable": hidden,
         "excluded": excluded_effects(found.measurement),
         "next_test": _next_test(found.next_test),
-        "ladder": [_level(each) for each in found.ladder],
+        "ladder": [_level(each, found.spread) for each in found.ladder],
+        "repeats": _repeats(found.spread),
         "record_by_record": [_of_records(each) for each in found.by_record],
         "empirical_force": missing_force.document(found.empirical),
         "extended": list(best.effects),
@@ -198,9 +200,24 @@ def _next_test(test: NextTest | None) -> dict[str, Any] | None:
     }
 
 
-def _level(level: Level) -> dict[str, Any]:
+def _repeats(spread: Spread | None) -> dict[str, Any] | None:
+    """How much repeats of a test differ; 0.01 is 1 % of the response."""
+    if spread is None:
+        return None
+    tests = [list(names) for names in spread.repeats]
+    numbers = {"share": spread.share, "ci95": list(spread.interval), "counts": spread.counts}
+    return {**numbers, "tests": tests}
+
+
+def _level(level: Level, spread: Spread | None) -> dict[str, Any]:
     """The most accurate explanation of a number of effects, with its rivals; 0.01 is 1 % of the response."""
+    left = (
+        {}
+        if spread is None or not spread.counts
+        else {"model_share": spread.left_to_model(level.best.accuracy)}
+    )
     return {
+        **left,
         **_rated(level.best),
         "accuracy_held_out": level.best.held_out,
         "distinct": level.distinct,
