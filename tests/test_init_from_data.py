@@ -649,3 +649,18 @@ def test_numbers_of_any_size_are_no_obstacle(tmp_path):
     told = invoke("init", tmp_path / "measured.toml", "--data", tmp_path / "one.npz", code=2)
     assert "in SI units is too large" in told
     assert 'kind = "steady"' in (tmp_path / "measured.toml").read_text()
+
+
+def test_an_oscilloscope_names_channels_by_number_and_states_its_interval(tmp_path):
+    """Which one is the motion shows in the numbers; the counter of samples is neither."""
+    t, d, f = loop()
+    rows = "\n".join(f"{i},{x / 20.0:.4e},{y / 10.0:.4e}," for i, (x, y) in enumerate(zip(d, f, strict=True)))
+    step = t[1] - t[0]
+    head = f"X,CH1,CH2,Start,Increment\nSequence,Volt,Volt,-1.5e+00,{step:e}\n"
+    (tmp_path / "NewFile1.csv").write_text(head + rows + "\n")
+    found = begun(tmp_path, tmp_path / "NewFile1.csv")
+    (test,) = found.tests
+    assert test.kind == "loop"
+    assert test.sampling_rate == pytest.approx(RATE)
+    np.testing.assert_allclose(test.displacement, 1e-3 * d / 20.0, atol=1e-7)
+    np.testing.assert_allclose(test.force, f / 10.0, atol=1e-3)

@@ -35,7 +35,7 @@ SYMBOLS = {
 PLACES = r"base|ground|table|fuss|support|wall|side.?frame|axle|wheel|floor|foundation"
 DRIVES = rf"input|excit|shaker|driv(er|ing)|exciter|source|anreg|{PLACES}"
 # A count of samples, which is no time.
-COUNTS = r"n|nr\.?|no\.?|#|index|samples?|points?|count(er)?|row|scan"
+COUNTS = r"n|nr\.?|no\.?|#|index|samples?|points?|count(er)?|row|scan|sequence"
 NOT_MEASURED = (
     r"ref|supply|ambient|desired|target|set.?p|command|cmd|soll|_des|error|not selected|status|trigger|limit"
     r"|coeff|\bcof\b"
@@ -186,7 +186,7 @@ def _times(columns: Sequence[Column]) -> list[Column]:
 
 
 def _is_count(column: Column) -> bool:
-    return re.fullmatch(COUNTS, column.label.strip().lower()) is not None
+    return any(re.fullmatch(COUNTS, words.strip().lower()) for words in (column.label, *column.words))
 
 
 def _goes_evenly(column: Column) -> bool:

@@ -16,7 +16,7 @@ from wedgesweep.units import UNITS
 
 # Names of single numbers that are a sampling rate (Hz), and of those that are a sampling interval (s).
 RATES = ("fs", "rate", "samplerate", "samplingrate", "samplefrequency", "samplingfrequency", "fsamp", "sr")
-INTERVALS = ("dt", "ts", "interval", "sampleinterval", "samplinginterval", "timestep")
+INTERVALS = ("dt", "ts", "interval", "sampleinterval", "samplinginterval", "timestep", "increment")
 # Rate (Hz) where nothing tells it.
 UNKNOWN_RATE = 1000.0
 

@@ -189,17 +189,18 @@ def _is_data(row: Sequence[str]) -> bool:
 
 
 def _single_numbers(lines: Sequence[str], how: Dialect, columns: Sequence[int]) -> dict[str, float]:
-    """Numbers by name: of lines above the columns, and those that stand under a name in the first row."""
+    """Numbers by name: of lines above the columns, and those that stand under a name, once, where these begin."""
     found = {}
     for line in lines[: how.first]:
         if len(line) <= LONGEST and (pair := NAMED_NUMBER.fullmatch(line)):
             unit = pair["before"] or pair["behind"]
             found[pair["name"]] = float(pair["number"]) * FACTORS.get(unit, 1.0)
-    first = csv_dialect.split(lines[how.first], how.delimiter)
-    others = [number for number in range(1, how.width + 1) if number not in columns]
+    rows = [csv_dialect.split(line, how.delimiter) for line in lines[max(how.first - 1, 0) : how.first + 1]]
+    others = [number for number in range(1, max(map(len, rows)) + 1) if number not in columns]
     for number, words in _labels(lines[: how.first], how.delimiter, how.width, others).items():
-        if words and number <= len(first) and PLAIN.fullmatch(first[number - 1]):
-            found[words[-1]] = float(first[number - 1])
+        cells = [row[number - 1] for row in rows if number <= len(row) and PLAIN.fullmatch(row[number - 1])]
+        if words and cells:
+            found[words[-1]] = float(cells[0])
     return found
 
 
