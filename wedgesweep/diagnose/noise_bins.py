@@ -12,13 +12,12 @@ import numpy as np
 from wedgesweep.diagnose.noise_spectrum import (
     BEST_FIT,
     CONSERVATIVE,
-    Choice,
+    MOST_NOISE,
     NoiseBins,
     NoiseSpectrum,
     fit_spectra,
     periodogram,
 )
-from wedgesweep.diagnose.smoothing import LEAST_KEPT
 
 # A bin with this many times the power of the noise is part of a line, as are this many neighbours on either
 # side. What depends on one another, as noise and lines, is estimated in turn, in ROUNDS.
@@ -27,14 +26,12 @@ STANDS_OUT, NEIGHBOURS, ROUNDS = 8.0, 2, 4
 LINE = 30.0
 # Standard deviations by which the mean of some bins exceeds the noise if they are skirts of the motion.
 SKIRT = 2.0
-# The noise with which bins are compared that may be skirts: as much as there may be.
-AMPLE = Choice(2.0)
 # Number of bands by which the lower end of the noise is moved up at most.
 UPWARDS = 4
 # Bands per octave, and ratio of the power of two bands an octave apart beyond which the lower one is motion.
 BANDS, STEEP = 2, 12.0
-# Least number of bins that must count as noise, beside LEAST_KEPT of those above the motion.
-FEWEST = 8
+# Least number of bins that must count as noise, and least share of those above the motion.
+FEWEST, LEAST_KEPT = 8, 0.25
 # A record is divided into PARTS. Those at its end, or beginning, whose rms is at most ALIKE times the least
 # one are quiet if there are at least QUIET_PARTS of them, with at most QUIET_SHARE of the record's rms, and
 # with at least QUIET_SAMPLES samples.
@@ -71,7 +68,7 @@ def noise_bins(samples: np.ndarray) -> OwnNoise:
         if following > power.size - enough:
             break
         above = _without_lines(frequency, power, following)
-        noise = _fitted(frequency, power, above, AMPLE)(frequency[first:following])
+        noise = _fitted(frequency, power, above, MOST_NOISE)(frequency[first:following])
         excess = power[first:following] / noise
         # Skirts of the motion exceed the noise that the bins above them lead one to expect.
         if np.minimum(excess, STANDS_OUT).mean() < 1.0 + SKIRT / sqrt(following - first):
@@ -100,8 +97,8 @@ def quiet_bins(samples: np.ndarray) -> NoiseBins | None:
     return noise_bins(quiet).bins
 
 
-def _fitted(frequency: np.ndarray, power: np.ndarray, kept: np.ndarray, choice: Choice) -> NoiseSpectrum:
-    return fit_spectra([[NoiseBins.of(frequency[kept], power[kept])]], choice)[0]
+def _fitted(frequency: np.ndarray, power: np.ndarray, kept: np.ndarray, loss: float) -> NoiseSpectrum:
+    return fit_spectra([[NoiseBins.of(frequency[kept], power[kept])]], loss)[0]
 
 
 def _without_lines(frequency: np.ndarray, power: np.ndarray, first: int) -> np.ndarray:

@@ -10,13 +10,14 @@ a misfit.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from math import pi, sqrt
+from math import log, pi, sqrt
 from typing import NamedTuple
 
 import numpy as np
 
 from wedgesweep.diagnose.smoothing import TWO_SIDED
 from wedgesweep.measured import TestRecord
+from wedgesweep.measured.kinds import HIGHEST
 from wedgesweep.periodogram import power_of, without_trend
 
 # Poles r that are tried, and iterations of a and b for each (multiplicative updates, see Fevotte and others,
@@ -87,24 +88,37 @@ class NoiseSpectrum:
 class NoiseBins(NamedTuple):
     """Bins of a spectrum that hold nothing but noise: frequency (rad a sample) and power, (b,) each.
 
-    ``known`` (b,): the part of the power that is not of the noise to be estimated.
+    ``known`` (b,): the part of the power that is not of the noise to be estimated; ``weight`` (b,): number of
+    bins that each is the mean of.
     """
 
     frequency: np.ndarray
     power: np.ndarray
     known: np.ndarray
+    weight: np.ndarray
 
     @classmethod
-    def of(cls, frequency: np.ndarray, power: np.ndarray, known: np.ndarray | None = None) -> "NoiseBins":
-        return cls(frequency, power, np.zeros(frequency.size) if known is None else known)
+    def of(cls, frequency: np.ndarray, power: np.ndarray, known: np.ndarray | float = 0.0) -> "NoiseBins":
+        return cls(frequency, power, known + 0.0 * frequency, np.ones(frequency.size))
+
+    @classmethod
+    def joined(cls, sources: Sequence["NoiseBins"]) -> "NoiseBins":
+        """Bins from several sources, averaged over bands each, to be fitted faster."""
+        averaged = (each._averaged() for each in sources if each.frequency.size)
+        return cls(*(np.concatenate(each) for each in zip(*averaged, strict=True)))
 
     def up_to(self, highest: float) -> "NoiseBins":
         """Those below a frequency (rad a sample)."""
         return NoiseBins(*(each[self.frequency < highest] for each in self))
 
-    def above(self, lowest: float) -> "NoiseBins":
-        """Those from a frequency (rad a sample) on."""
-        return NoiseBins(*(each[self.frequency >= lowest] for each in self))
+    def _averaged(self) -> "NoiseBins":
+        """Means over bands in which no spectrum changes much."""
+        order = np.argsort(self.frequency, kind="stable")
+        bands = np.floor(np.log(self.frequency[order]) / WIDTH)
+        count = np.unique(bands, return_counts=True)[1].astype(float)
+        first = np.r_[0, np.cumsum(count[:-1])].astype(int)
+        mean = [np.add.reduceat(each[order], first) / count for each in self[:3]]
+        return NoiseBins(mean[0], mean[1], mean[2], count)
 
 
 def of_noise(
@@ -117,8 +131,8 @@ def of_noise(
     """
     both = [periodogram(each) for each in records]
     frequency, power = (np.concatenate(each) for each in zip(*both, strict=True))
-    floor = None if known is None else known(frequency)
-    return replace(fit_spectra([[NoiseBins.of(frequency, power, floor)]], CONSERVATIVE)[0], source=source)
+    bins = NoiseBins.of(frequency, power, known(frequency) if known else 0.0)
+    return replace(fit_spectra([[bins]], CONSERVATIVE)[0], source=source)
 
 
 def periodogram(samples: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -127,87 +141,68 @@ def periodogram(samples: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return (np.arange(found.size) + 2) * 2.0 * pi / samples.size, found
 
 
-class Choice(NamedTuple):
-    """Which of the spectra that fit about as well is taken.
+def white_noise(samples: np.ndarray) -> float:
+    """Standard deviation of the white noise in samples (n,), by their power above that of a motion.
 
-    White noise is, unless colour gains more than ``coloured`` in log-likelihood. Else, of all poles whose
-    log-likelihood is at most ``loss`` below the best one, that with most noise is taken. ``everywhere``: the
-    other poles count as well, at frequencies where they have more noise. Levels are raised to the upper end
-    of their 95 % interval, unless ``loss`` is 0.
+    The result is the upper end of the 95 % interval: in a short record an estimate that is too low would look
+    like a misfit. The median counts, so that lines do not.
     """
-
-    loss: float
-    coloured: float = COLOURED
-    everywhere: bool = False
-
-
-# The maximum-likelihood spectrum, one that errs to the safe side, and the upper end of a 95 % interval.
-BEST_FIT, CONSERVATIVE, MOST_NOISE = Choice(0.0), Choice(0.5), Choice(2.0, everywhere=True)
+    frequency, power = periodogram(samples)
+    above = power[frequency > 2.0 * pi * HIGHEST]
+    # The power of noise has a median of log 2, which scatters by 1 / sqrt(n) in n independent bins.
+    raised = 1.0 + TWO_SIDED * sqrt(CORRELATED / above.size) / log(2.0)
+    return sqrt(raised * float(np.median(above)) / log(2.0))
 
 
-def fit_spectra(tests: Sequence[Sequence[NoiseBins]], choice: Choice = MOST_NOISE) -> list[NoiseSpectrum]:
+# Log-likelihood that a spectrum may lack to count beside the best one: none for the maximum-likelihood one,
+# and for spectra that err to the safe side, at an upper end of 68 % and of 95 % intervals.
+BEST_FIT, CONSERVATIVE, MOST_NOISE = 0.0, 0.5, 2.0
+
+
+def fit_spectra(
+    tests: Sequence[Sequence[NoiseBins]], loss: float = MOST_NOISE, coloured: float = COLOURED
+) -> list[NoiseSpectrum]:
     """Spectra of the noise of T tests, of one shape but each of its own level.
 
-    ``tests``: bins of each test, from one source or several.
+    White noise is taken, unless colour gains more than ``coloured`` in log-likelihood. Else, of all poles
+    whose log-likelihood is at most ``loss`` below the best one, that with most noise is taken; the others
+    count as well, at frequencies where they have more. Levels are raised to the upper end of their 95 %
+    interval, unless ``loss`` is 0. ``tests``: bins of each test, from one source or several.
     """
-    own = [_bands(each) for each in tests]
-    bands = _Bands(*(np.concatenate(each) for each in zip(*own, strict=True)))
-    member = np.repeat(np.eye(len(own)), [each.bins.size for each in own], axis=0)
-    bins = bands.bins @ member
-    mean = (bands.bins * bands.power) @ member / bins
+    own = [NoiseBins.joined(each) for each in tests]
+    bands = NoiseBins(*(np.concatenate(each) for each in zip(*own, strict=True)))
+    member = np.repeat(np.eye(len(own)), [each.weight.size for each in own], axis=0)
+    bins = bands.weight @ member
+    mean = (bands.weight * bands.power) @ member / bins
     bands = bands._replace(known=bands.known + member @ (1e-12 * mean + 1e-300))
     found = _fitted(bands, member, np.array([_at_first(each) for each in own]))
-    raised = 0.0 if choice.loss == 0.0 else TWO_SIDED * np.sqrt(CORRELATED / bins)
+    raised = 0.0 if loss == BEST_FIT else TWO_SIDED * np.sqrt(CORRELATED / bins)
     best, *others = (
         [found.spectrum(place, level) for level in found.level[place] * (1.0 + raised)]
-        for place in _chosen(found, choice)
+        for place in _chosen(found, loss, coloured)
     )
     return [replace(each, likewise=tuple(like)) for each, *like in zip(best, *others, strict=True)]
 
 
-def _chosen(found: "_Fitted", choice: Choice) -> list[int]:
+def _chosen(found: "_Fitted", most: float, coloured: float) -> list[int]:
     """Indices of the poles that are taken, the leading one first; [0], white noise, unless colour is seen."""
     loss = found.loss - found.loss.min()
-    if loss[0] <= choice.coloured:
+    if loss[0] <= coloured:
         return [0]
     mean_power = (found.red[:, None] * _shape(POLES[:, None], GRID) + found.white[:, None]).mean(axis=1)
     mean_power = mean_power * found.level[:, 0]
-    good = np.flatnonzero(loss <= choice.loss)
-    good = good[np.argsort(-mean_power[good])]
-    return [int(place) for place in (good if choice.everywhere else good[:1])]
+    good = np.flatnonzero(loss <= most)
+    return good[np.argsort(-mean_power[good])].tolist()
 
 
 def _shape(pole: float | np.ndarray, frequency: np.ndarray) -> np.ndarray:
     return 1.0 / (1.0 + pole**2 - 2.0 * pole * np.cos(frequency))
 
 
-class _Bands(NamedTuple):
-    """Means over narrow bands of bins: frequency, power, known power, and number of bins, (b,) each."""
-
-    frequency: np.ndarray
-    power: np.ndarray
-    known: np.ndarray
-    bins: np.ndarray
-
-
-def _bands(given: Sequence[NoiseBins]) -> _Bands:
-    """Means of the bins of one test over bands in which no spectrum changes much; each source by itself."""
-    found = []
-    for each in given:
-        if not each.frequency.size:
-            continue
-        frequency, power, known = (values[np.argsort(each.frequency, kind="stable")] for values in each)
-        first = np.flatnonzero(np.diff(np.floor(np.log(frequency) / WIDTH), prepend=-np.inf))
-        bins = np.diff(np.r_[first, frequency.size])
-        mean = [np.add.reduceat(values, first) / bins for values in (frequency, power, known)]
-        found.append((*mean, bins))
-    return _Bands(*(np.concatenate(each) for each in zip(*found, strict=True)))
-
-
-def _at_first(bands: _Bands) -> float:
+def _at_first(bands: NoiseBins) -> float:
     """First estimate of the level of a test: its mean power at the highest frequencies."""
     high = bands.frequency >= (1.0 - HIGH) * bands.frequency.max()
-    return max(float((bands.bins * bands.power)[high].sum() / bands.bins[high].sum()), 1e-300)
+    return max(float((bands.weight * bands.power)[high].sum() / bands.weight[high].sum()), 1e-300)
 
 
 class _Fitted(NamedTuple):
@@ -226,12 +221,12 @@ class _Fitted(NamedTuple):
         return NoiseSpectrum(float(level * red), float(POLES[place]), float(level * white))
 
 
-def _fitted(bands: _Bands, member: np.ndarray, level: np.ndarray) -> _Fitted:
+def _fitted(bands: NoiseBins, member: np.ndarray, level: np.ndarray) -> _Fitted:
     """Maximum likelihood for each pole.
 
     ``member`` (b, T): 1 where a band is of a test, else 0; ``level`` (T,): first estimate.
     """
-    bins, shape = bands.bins, _shape(POLES[:, None], bands.frequency)
+    bins, shape = bands.weight, _shape(POLES[:, None], bands.frequency)
     high = _shape(POLES, np.array(pi))[:, None]
     red, white = 0.5 / high, np.full((POLES.size, 1), 0.5)
     levels = np.tile(level, (POLES.size, 1))

@@ -7,7 +7,7 @@ the fifth power of the cut-off frequency, which therefore has an upper limit (``
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import inf, pi, sqrt
+from math import inf, pi
 
 import numpy as np
 from scipy import signal
@@ -33,12 +33,9 @@ LOUD = 0.1
 WIDER = 2.0
 # Part of a record at either end, in periods of the cut-off, in which the filter has not settled.
 SETTLING = 2.5
-# A step from one sample to the next is part of a jump if it is off by more than JUMP standard deviations.
-JUMP = 6.0
-# Values beyond OUTLIER standard deviations are clipped, CLIPPINGS times.
-OUTLIER, CLIPPINGS = 4.0, 4
-# Share of a record, or of its bins, that must be left without outliers and their neighbours.
-LEAST_KEPT = 0.25
+# A step from one sample to the next is part of a jump if it is off by more than JUMP standard deviations from
+# the usual one of those around it, in a record of AROUND: a sensor may take some samples to follow.
+JUMP, AROUND = 6.0, 9
 # Ends of a 95 % interval in standard deviations, and the median of the absolute value of a normal variable.
 TWO_SIDED, MEDIAN = float(ndtri(0.975)), float(ndtri(0.75))
 # Samples of the Fourier transform by whose frequencies a filter's gain is averaged.
@@ -78,10 +75,6 @@ class LowPass:
         frequency = self.rate * np.fft.rfftfreq(GRID)
         return std * float(np.sqrt(np.mean(((2.0 * pi * frequency) ** order * self.gain(GRID)) ** 2)))
 
-    def noise_above(self, std: float) -> float:
-        """Standard deviation of what the filter removes of white noise with this ``std``."""
-        return std * float(np.sqrt(np.mean((1.0 - self.gain(GRID)) ** 2)))
-
     def gain(self, size: int) -> np.ndarray:
         """Gain (size // 2 + 1,) at the frequencies of a real Fourier transform of ``size`` samples."""
         return np.abs(signal.sosfreqz(self._sections, 2.0 * pi * np.fft.rfftfreq(size))[1]) ** 2
@@ -97,33 +90,20 @@ def derivative(values: np.ndarray, rate: float, order: int = 1) -> np.ndarray:
     return make_interp_spline(places, values, k=5, axis=-1)(places, order) * rate**order
 
 
-def unlike_steps(samples: np.ndarray, around: int) -> tuple[np.ndarray, float]:
-    """Steps of samples (n,), less the median of some steps ``around`` each (n - 1,); beyond what, jumps."""
+def unlike_steps(samples: np.ndarray, around: int) -> np.ndarray:
+    """Steps of samples (n,) that are parts of a jump, else 0, less the usual one of ``around``; (n - 1,)."""
     steps = np.diff(samples)
     unlike = steps - median_filter(steps, around, mode="nearest")
-    return unlike, JUMP * float(np.median(np.abs(unlike))) / MEDIAN
+    return np.where(np.abs(unlike) > JUMP * float(np.median(np.abs(unlike))) / MEDIAN, unlike, 0.0)
 
 
-def white_noise(values: np.ndarray, rate: float, jumps: bool = False) -> float:
-    """Standard deviation of the white noise in samples (n,), from what lies above the motion's frequencies.
+def continuous(samples: np.ndarray) -> np.ndarray:
+    """Samples (n,) without their jumps, as dry friction makes a force or an acceleration jump as it turns.
 
-    The result is the upper end of the 95 % interval: in a short record an estimate that is too low would look
-    like a misfit. Outliers do not count as noise. ``jumps``: they are jumps of dry friction, and samples
-    nearby do not count either, as the filter spreads a jump; unless that would leave less than LEAST_KEPT of
-    the record, as where noise comes and goes.
+    Each step of a jump is replaced by the usual one there. The power of jumps falls with frequency as that of
+    red noise does, up to the highest frequencies of a record: left in, they would be taken for noise.
     """
-    low_pass = LowPass(HIGHEST * rate, rate)
-    above = np.abs(values - low_pass(values))
-    share = low_pass.noise_above(1.0)
-    size = float(np.median(above)) / MEDIAN
-    near = np.ones(2 * low_pass.settling + 1)
-    for _ in range(CLIPPINGS):
-        kept = above <= OUTLIER * size
-        if jumps:
-            clear = np.convolve(~kept, near, mode="same") < 0.5
-            kept = clear if clear.mean() > LEAST_KEPT else kept
-        size = float(np.sqrt(np.mean(above[kept] ** 2)))
-    return size / share * (1.0 + TWO_SIDED / sqrt(2.0 * kept.sum() * share**2))
+    return samples - np.r_[0.0, np.cumsum(unlike_steps(samples, AROUND))]
 
 
 def chosen_cutoff(displacement: np.ndarray, std: float, force: float, mass: float, rate: float) -> float:

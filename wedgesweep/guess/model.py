@@ -8,7 +8,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import nnls
 
-from wedgesweep.diagnose.smoothing import LOWEST, LowPass, derivative, white_noise
+from wedgesweep.diagnose.noise_spectrum import white_noise
+from wedgesweep.diagnose.smoothing import LOWEST, LowPass, derivative
 from wedgesweep.measured import Measurement, TestRecord, contact_load
 from wedgesweep.measured.declarations import MOTIONS, RELATIVE
 from wedgesweep.measured.kinds import HIGHEST
@@ -245,7 +246,7 @@ def _low_pass(test: TestRecord) -> LowPass:
     filters = [LowPass(cut_off, rate) for cut_off in cut_offs]
     if signal is None:
         return filters[0]
-    noise = white_noise(signal, rate)
+    noise = white_noise(signal)
     for low_pass in filters:
         acceleration = derivative(low_pass(signal), rate, 2 - order)
         if low_pass.noise(noise, 2 - order) < NOISY * acceleration.std():

@@ -14,7 +14,11 @@ from wedgesweep.report.inline_figures import InlineFigures
 FIGURES = {"loop": "loops", "transient": "decays"}
 # Headings of the table, and keys of diagnosis.json.
 COLUMNS = {
-    "loop": {"low-pass [Hz]": "lowpass_hz", "noise [N]": "noise_force_N"},
+    "loop": {
+        "low-pass [Hz]": "lowpass_hz",
+        "noise [N]": "noise_force_N",
+        "noise as fitted [N]": "noise_force_fitted_N",
+    },
     "transient": {
         "duration [s]": "duration_s",
         "start [mm]": "start_mm",

@@ -181,7 +181,8 @@ class LoopData(SampledData):
         return [
             {
                 "lowpass_hz": own.low_pass.cutoff,
-                "noise_force_N": own.noise,
+                "noise_force_N": own.noise_as_stated,
+                "noise_force_fitted_N": own.noise,
                 "noise_from": own.spectrum.source,
                 "noise_correlation": own.spectrum.correlation,
                 "noise_velocity_mm_per_s": 1e3 * own.motion.noise[1],

@@ -41,9 +41,9 @@ def jumps(force: np.ndarray) -> np.ndarray:
 
     A jump may be shared by two samples, and so be in up to three steps.
     """
-    unlike, limit = unlike_steps(force, ALIKE)
+    unlike = unlike_steps(force, ALIKE)
     size = np.abs(unlike)
-    largest = (size >= np.maximum(maximum_filter1d(size, SHARED), limit)) & (size > 0.0)
+    largest = (size > 0.0) & (size >= maximum_filter1d(size, SHARED))
     return np.r_[np.where(largest, np.abs(np.convolve(unlike, np.ones(SHARED), mode="same")), 0.0), 0.0]
 
 

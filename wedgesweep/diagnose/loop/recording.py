@@ -16,9 +16,9 @@ from wedgesweep.diagnose.fit_parameters import Values
 from wedgesweep.diagnose.loop import motion_noise
 from wedgesweep.diagnose.loop.force_noise import of_force
 from wedgesweep.diagnose.loop.motion_noise import Derivatives
-from wedgesweep.diagnose.noise_spectrum import FROM_REPEATS, NoiseSpectrum, of_noise
+from wedgesweep.diagnose.noise_spectrum import FROM_REPEATS, NoiseSpectrum, of_noise, white_noise
 from wedgesweep.diagnose.sampled_data import MOST_BLOCKS, Decorrelation, decorrelation
-from wedgesweep.diagnose.smoothing import LowPass, Motion, chosen_cutoff, motion, white_noise
+from wedgesweep.diagnose.smoothing import LowPass, Motion, chosen_cutoff, continuous, motion
 from wedgesweep.effects import channel_delay, force_gain, merge
 from wedgesweep.errors import InputError
 from wedgesweep.measured import TestRecord
@@ -56,7 +56,8 @@ class Recording:
     whether friction is, which it is not where the mass may rest; ``blocks``: slices of the k samples, whole
     cycles each; ``white`` (N): noise of the force at the places as frequencies above the filter show it;
     ``differences``: what repeats leave of the force at the places; ``error_of_start`` (k,) (N): by bristles
-    whose deflection at the start of the record is not known, None without bristles.
+    whose deflection at the start of the record is not known, None without bristles; ``noise_as_stated`` (N):
+    of a compared force under the base model as stated.
     """
 
     name: str
@@ -74,6 +75,7 @@ class Recording:
     spectrum: NoiseSpectrum = NO_NOISE
     passed_on: np.ndarray | None = None
     error_of_start: np.ndarray | None = None
+    noise_as_stated: float = 0.0
 
     @property
     def noise(self) -> float:
@@ -220,7 +222,7 @@ def recording(test: TestRecord, model: Config, law: str, differences: Sequence[n
     assert test.force is not None
     displacement, force, rate = test.displacement, test.force, test.sampling_rate
     mass = moving_mass(model, law)
-    noise = white_noise(displacement, rate)
+    noise = white_noise(displacement)
     low_pass = LowPass(
         test.cutoff or chosen_cutoff(displacement, noise, float(force.std()), mass, rate), rate
     )
@@ -235,7 +237,7 @@ def recording(test: TestRecord, model: Config, law: str, differences: Sequence[n
         problem = f"its motion is no faster than its noise ({1e3 * own.noise[1]:.3g} mm/s) for long"
         raise InputError([f"{problem}; move it faster, or measure it with less noise"])
     blocks = _blocks(own.velocity[places])
-    white = low_pass.noise(white_noise(force, rate, jumps=True))
+    white = low_pass.noise(white_noise(continuous(force)))
     left = tuple(low_pass(each)[ends : -ends : low_pass.stride] for each in differences)
     found = Recording(
         test.name, model, law, low_pass, own, noise, places, compared, known, blocks, white, left
@@ -244,7 +246,7 @@ def recording(test: TestRecord, model: Config, law: str, differences: Sequence[n
     if found.noise_share > 1.0:
         problem = f"its noise is {100.0 * found.noise_share:.0f} % of the force, so that it shows nothing"
         raise InputError([f"{problem}; measure a larger force, lower lowpass_hz, or correct the columns"])
-    return found
+    return replace(found, noise_as_stated=found.noise)
 
 
 def moving_mass(model: Config, law: str) -> float:

@@ -37,11 +37,11 @@ class Difference(NamedTuple):
 
     def of_higher(self, lower: NoiseSpectrum) -> NoiseBins:
         """Bins of noise of the higher derivative, where that of the lower one is known."""
-        return NoiseBins(self.frequency, self.power, self.share * lower(self.frequency))
+        return NoiseBins.of(self.frequency, self.power, self.share * lower(self.frequency))
 
     def of_lower(self, higher: NoiseSpectrum) -> NoiseBins:
         """Bins of noise of the lower derivative, where that of the higher one is known."""
-        return NoiseBins(self.frequency, self.power / self.share, higher(self.frequency) / self.share)
+        return NoiseBins.of(self.frequency, self.power / self.share, higher(self.frequency) / self.share)
 
 
 class _Sums(NamedTuple):

@@ -15,9 +15,9 @@ import numpy as np
 from wedgesweep.diagnose.noise_bins import FEWEST, ROUNDS, OwnNoise, noise_bins, quiet_bins
 from wedgesweep.diagnose.noise_spectrum import (
     BEST_FIT,
+    COLOURED,
     FROM_REPEATS,
     MOST_NOISE,
-    Choice,
     NoiseBins,
     NoiseSpectrum,
     fit_spectra,
@@ -25,13 +25,11 @@ from wedgesweep.diagnose.noise_spectrum import (
     repeat_differences,
     repeat_groups,
 )
-from wedgesweep.diagnose.smoothing import unlike_steps
+from wedgesweep.diagnose.smoothing import continuous
 from wedgesweep.diagnose.transient.channel_differences import Difference, differences
 from wedgesweep.measured import TestRecord
 from wedgesweep.measured.declarations import MOTIONS
 
-# Steps around one that tell the usual size of a step.
-AROUND = 9
 # Order of an acceleration, whose jumps are no noise: derivative of the displacement.
 ACCELERATION = MOTIONS.index("acceleration")
 # Sampling rates that differ by less than this are the same.
@@ -96,12 +94,11 @@ class NoiseEvidence:
                 found.append(each.of_lower(known[t, higher]))
         return [each.up_to(first) for each in found]
 
-    def fitted(self, own: Mapping[Key, OwnNoise], known: Spectra, choice: Choice) -> Spectra:
+    def fitted(self, own: Mapping[Key, OwnNoise], known: Spectra, loss: float) -> Spectra:
         """Noise of one channel in all tests, from its ``own`` bins and from other sources."""
         bins = [[its.bins, *self.others(key, its.first, known)] for key, its in own.items()]
-        if not _near_the_motion(bins, own.values()):
-            choice = choice._replace(coloured=0.0)
-        both = zip(own, fit_spectra(bins, choice), strict=True)
+        coloured = COLOURED if _near_the_motion(bins, own.values()) else 0.0
+        both = zip(own, fit_spectra(bins, loss, coloured), strict=True)
         return {key: each.up_to(own[key].highest) for key, each in both}
 
     @property
@@ -167,13 +164,3 @@ def from_repeats(tests: Sequence[TestRecord], channels: Sequence[Channels]) -> S
             noise = of_noise(left, FROM_REPEATS)
             found |= {(row, order): noise for row in rows}
     return found
-
-
-def continuous(samples: np.ndarray) -> np.ndarray:
-    """Samples (n,) without their jumps, as dry friction makes an acceleration jump where it changes its sign.
-
-    Each step of a jump is replaced by the usual one there. The power of jumps falls with frequency as that of
-    red noise does, up to the highest frequencies of a record: left in, they would be taken for noise.
-    """
-    unlike, limit = unlike_steps(samples, AROUND)
-    return samples - np.r_[0.0, np.cumsum(np.where(np.abs(unlike) > limit, unlike, 0.0))]
