@@ -23,11 +23,9 @@ ORDER = 4
 # Noise of the displacement makes up at most this share of the force, by inertia, and of the velocity; the
 # cut-off is the highest one at which that holds, between LOWEST and HIGHEST of the sampling rate.
 NOISE_SHARE, LOWEST = 0.005, 1e-3
-# A line of a spectrum belongs to the motion if its power is STANDS_OUT times the noise; a low-pass lets all
-# of them through but for NOT_PASSED of the velocity's rms.
-STANDS_OUT, NOT_PASSED = 10.0, 0.01
-# Mean power of a velocity in an octave, over that in the loudest one, that belongs to the motion for sure.
-LOUD = 0.1
+# A low-pass lets all of the motion through but for NOT_PASSED of the velocity's rms. An octave belongs to the
+# motion for sure if the velocity's mean power in it is LOUD, over that in the loudest one.
+NOT_PASSED, LOUD = 0.01, 0.1
 # Cut-off of the filter that the motion passes first, over that in which forces are compared: derivatives are
 # right wherever forces are compared.
 WIDER = 2.0
@@ -108,36 +106,31 @@ def continuous(samples: np.ndarray) -> np.ndarray:
 
 def chosen_cutoff(displacement: np.ndarray, std: float, force: float, mass: float, rate: float) -> float:
     """Cut-off (Hz) for a recorded displacement (n,) in m: see ``highest_cutoff``; the motion passes."""
-    speed, passes = _spread(displacement, std, rate)
+    speed, passes = _spread(displacement, rate)
     return max(highest_cutoff(std, force, mass, rate, speed), min(passes, HIGHEST * rate))
 
 
-def _spread(displacement: np.ndarray, std: float, rate: float) -> tuple[float, float]:
-    """Rms (m/s) of the velocity, and the frequency (Hz) up to which it has its power.
+def _spread(displacement: np.ndarray, rate: float) -> tuple[float, float]:
+    """Rms (m/s) of the velocity, and the frequency (Hz) up to which it has all of that but NOT_PASSED.
 
-    Beyond it are neither lines that stand out of white noise (m) of this ``std`` nor, as noise of another
-    colour may do so, less power than at still higher frequencies.
+    What lies beyond the quietest octave is noise of any colour, or a hum.
     """
-    lines, frequency = (
-        power_of(displacement - displacement.mean()),
-        np.fft.rfftfreq(displacement.size, 1.0 / rate),
-    )
-    speeds = lines * (2.0 * pi * frequency) ** 2
-    power = np.where(lines > STANDS_OUT * std**2, speeds, 0.0)
-    above = np.cumsum(power[::-1])[::-1]
-    speed = float(np.sqrt(2.0 * above[0] / displacement.size))
+    frequency = np.fft.rfftfreq(displacement.size, 1.0 / rate)
+    speeds = power_of(displacement - displacement.mean()) * (2.0 * pi * frequency) ** 2
+    speeds[_quietest(speeds) :] = 0.0
+    above = np.cumsum(speeds[::-1])[::-1]
     passed = int(np.argmax(above <= NOT_PASSED**2 * above[0]))
-    return speed, min(float(frequency[passed]), _quietest(speeds, frequency))
+    return float(np.sqrt(2.0 * above[0] / displacement.size)), float(frequency[passed])
 
 
-def _quietest(speeds: np.ndarray, frequency: np.ndarray) -> float:
-    """Frequency (Hz) at which the octave with the least power of a velocity begins, above all loud ones."""
+def _quietest(speeds: np.ndarray) -> int:
+    """First bin of the octave with the least power of a velocity, above all loud ones."""
     edges = [max(int(speeds.argmax()), 1)]
     while 2 * edges[-1] < speeds.size:
         edges.append(2 * edges[-1])
     levels = np.array([speeds[first : 2 * first].mean() for first in edges])
     last = int(np.flatnonzero(levels >= LOUD * levels.max())[-1])
-    return float(frequency[edges[last + int(levels[last:].argmin())]])
+    return edges[last + int(levels[last:].argmin())]
 
 
 def highest_cutoff(std: float, force: float, mass: float, rate: float, speed: float = inf) -> float:

@@ -11,7 +11,7 @@ to be larger, they would leave 1.3 times (0.5 times): nothing would be missing.
 """
 
 from collections.abc import Sequence
-from math import pi
+from math import comb, pi
 from typing import NamedTuple
 
 import numpy as np
@@ -96,16 +96,12 @@ def _sums(lower: np.ndarray, higher: np.ndarray, orders: int) -> _Sums:
     window = 0.5 * (1.0 - np.cos(angle)), pi / size * np.sin(angle), 2.0 * (pi / size) ** 2 * np.cos(angle)
     count = size // 2 + 1
     frequency = 2.0 * pi * np.arange(count) / size
-    turning = -1j * frequency
 
-    def sums(values: np.ndarray, derivative: int) -> np.ndarray:
-        """Sums of values times a derivative of the window, which turns at each frequency, with its sign."""
-        own = [_transformed(values * each) for each in window]
-        if derivative == 0:
-            return own[0]
-        if derivative == 1:
-            return -(own[1] + turning * own[0])
-        return own[2] + 2.0 * turning * own[1] + turning**2 * own[0]
+    def sums(values: np.ndarray, order: int) -> np.ndarray:
+        """Sums of a derivative of values, by parts: the turning window is differentiated in its place."""
+        own = (_transformed(values * each) for each in window[: order + 1])
+        parts = (comb(order, k) * (1j * frequency) ** (order - k) * each for k, each in enumerate(own))
+        return sum((-1) ** k * each for k, each in enumerate(parts))
 
     rms = np.sqrt((window[0] ** 2).sum())
     kept = slice(LOWEST, None)

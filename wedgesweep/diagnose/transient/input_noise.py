@@ -5,7 +5,6 @@ to the input and subtracted from it; half the difference of the two responses is
 resonance this is noise of a narrow band, whose neighbouring coefficients are far from independent.
 """
 
-from collections.abc import Sequence
 from dataclasses import replace
 from math import pi, sqrt
 from typing import NamedTuple
@@ -14,7 +13,6 @@ import numpy as np
 from scipy.fft import dct
 
 from wedgesweep.diagnose.sampled_data import LARGEST_BLOCK, Decorrelation, decorrelation
-from wedgesweep.diagnose.smoothing import derivative
 from wedgesweep.sampled_input import SampledInput, polynomials
 
 # Knots of the input beyond a window to either side.
@@ -79,17 +77,6 @@ def disturbed(given: SampledInput, parts: Cosines) -> list[SampledInput]:
         for sign in (1.0, -1.0)
         for each in changes
     ]
-
-
-def converted(parts: Cosines, shares: Sequence[float], orders: Sequence[int], lead: int) -> np.ndarray:
-    """What the k cosines add to channels that were converted with the motion of the base, (k, C, n).
-
-    ``orders`` (C,): the derivative of the displacement that each channel is.
-    """
-    wrong = parts.at(parts.step * np.arange(parts.samples))
-    motion = wrong, *(derivative(wrong, 1.0 / parts.step, order) for order in (1, 2))
-    pairs = zip(shares, orders, strict=True)
-    return np.stack([share * motion[order] for share, order in pairs], axis=1)[..., lead:]
 
 
 def decorrelated(own: np.ndarray, changes: np.ndarray) -> tuple[Decorrelation, ...]:

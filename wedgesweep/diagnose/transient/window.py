@@ -20,7 +20,6 @@ from wedgesweep.diagnose.noise_spectrum import NoiseSpectrum
 from wedgesweep.diagnose.sampled_data import Decorrelation
 from wedgesweep.diagnose.transient.input_noise import (
     InputNoise,
-    converted,
     cosines,
     decorrelated,
     disturbed,
@@ -162,12 +161,11 @@ class RecordWindow:
         both = zip(self.orders, self._shares, strict=True)
         return tuple(order for order, share in both if share == 0.0)
 
-    @cached_property
-    def added(self) -> np.ndarray:
-        """Motion of the base that was added to the channels, (C, n); it has the error of the input's gain."""
+    def added(self, given: SampledInput) -> np.ndarray:
+        """Motion of the base that an input adds to the channels, (C, n): it has the errors of the input."""
         times = self.step * np.arange(self.grid.lead, self.grid.samples)
         both = zip(self.orders, self._shares, strict=True)
-        return np.array([share * self.input(times, order) if share else 0.0 * times for order, share in both])
+        return np.array([share * given(times, order) if share else 0.0 * times for order, share in both])
 
     @cached_property
     def _frequency(self) -> np.ndarray:
@@ -200,11 +198,9 @@ class RecordWindow:
         rows = np.repeat(self.records([values]), len(inputs), axis=0)
         for place, each in enumerate(inputs):
             self.drive(rows[place : place + 1], each, gain)
-        above, below = np.split(self.motions(rows, np.repeat(start[None], len(rows), axis=0), tolerance), 2)
-        changes = converted(parts, self.input_noise.shares, self.orders, self.grid.lead) - 0.5 * (
-            above - below
-        )
-        return decorrelated(self.noise**2, np.nan_to_num(changes))
+        motions = self.motions(rows, np.repeat(start[None], len(rows), axis=0), tolerance)
+        above, below = np.split(np.array([self.added(each) for each in inputs]) - motions, 2)
+        return decorrelated(self.noise**2, np.nan_to_num(0.5 * (above - below)))
 
     def in_time(self, coefficients: np.ndarray) -> np.ndarray:
         """Signals (..., C, n) of coefficients (..., C, K)."""
@@ -282,5 +278,5 @@ def simulated_together(
     motions = first.motions(rows, starts.reshape(n * count, -1, 2), tolerance)
     motions = motions.reshape(n, count, *motions.shape[1:])
     if first.converted:
-        motions -= (gains - 1.0)[..., None, None] * np.array([own.added for own in windows])
+        motions -= (gains - 1.0)[..., None, None] * np.array([own.added(own.input) for own in windows])
     return dct(motions, norm="ortho")[..., : first.coefficients]
