@@ -38,8 +38,12 @@ def constant(temperature, velocity):
     return 3.0 * np.sign(velocity)
 
 
-def test_each_test_is_simulated_at_its_own_temperature(tmp_path):
-    data = data_of(api.read_measurement(write(tmp_path)))
+@pytest.mark.parametrize("reference", [20.0, 10.0])
+def test_each_test_is_simulated_at_its_own_temperature(tmp_path, reference):
+    """The coefficients of the model are those at the reference that it states."""
+    path = write(tmp_path)
+    (tmp_path / "model.toml").write_text(f"{MODEL}[effects.thermal_drift]\nreference_C = {reference}\n")
+    data = data_of(api.read_measurement(path))
     numbers = {"share": SHARE, "temperature": 20.0, "reference": 20.0}
     point = Point(np.zeros(0), *data.start())
     cold, drift = data.compare(
@@ -52,7 +56,7 @@ def test_each_test_is_simulated_at_its_own_temperature(tmp_path):
     ]
     by_test = dict(zip(data.names, lost, strict=True))
     found = [max(lost for name, lost in by_test.items() if f"-{a:g}-" in name) for a in AMPLITUDES]
-    assert found == pytest.approx([3.0 * -SHARE * (t - 20.0) for t in TEMPERATURES], rel=0.02, abs=1e-9)
+    assert found == pytest.approx([3.0 * -SHARE * (t - reference) for t in TEMPERATURES], rel=0.02, abs=1e-9)
 
 
 def test_a_candidate_where_temperatures_differ(tmp_path):
