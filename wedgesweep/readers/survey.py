@@ -189,11 +189,7 @@ def _is_data(row: Sequence[str]) -> bool:
 
 
 def _single_numbers(lines: Sequence[str], how: Dialect, columns: Sequence[int]) -> dict[str, float]:
-<<<<<<< Updated upstream
     """Numbers by name: of lines above the columns, and those that stand once below a name there."""
-=======
-    """Numbers by name: of lines above the columns, and what stands under a name once, where they begin."""
->>>>>>> Stashed changes
     found = {}
     for line in lines[: how.first]:
         if len(line) <= LONGEST and (pair := NAMED_NUMBER.fullmatch(line)):
