@@ -16,8 +16,8 @@ import numpy as np
 from scipy.special import chdtri
 
 from wedgesweep.diagnose.noise_spectrum import repeat_groups
-from wedgesweep.diagnose.steady.spectra import fitted
 from wedgesweep.measured import Measurement, TestRecord
+from wedgesweep.measured.cycles import cut
 from wedgesweep.measured.declarations import LOOP, STEADY
 from wedgesweep.measured.frequency import FEWEST_CYCLES
 
@@ -80,12 +80,12 @@ class _Run(NamedTuple):
     def harmonics(self) -> tuple[np.ndarray, np.ndarray]:
         """Harmonics (C, H) from phase 0 of the input, per unit of its amplitude if known, and variances."""
         time, frequency = self.test.time, self.test.refined_frequency
-        turned = fitted(time, self.reference[None], frequency).mean[0, 0]
-        each = [fitted(time, samples[None], frequency) for samples in self.responses]
-        mean, variance = (np.array([getattr(one, name)[0] for one in each]) for name in ("mean", "variance"))
+        turned = cut(time, self.reference, frequency).harmonics[:, 0].mean()
+        cycles = np.array([cut(time, samples, frequency).harmonics for samples in self.responses])
         size = abs(turned) if self.scaled else 1.0
-        turns = np.exp(-1j * np.angle(turned) * np.arange(1, mean.shape[1] + 1))
-        return mean * turns / size, variance / size**2
+        turns = np.exp(-1j * np.angle(turned) * np.arange(1, cycles.shape[-1] + 1))
+        variance = cycles.var(axis=1, ddof=1) / cycles.shape[1]
+        return cycles.mean(axis=1) * turns / size, variance / size**2
 
 
 def spread_of(measurement: Measurement) -> Spread | None:
