@@ -316,6 +316,7 @@ def test_an_investigation_searches_every_scenario_and_reports_every_hypothesis(o
         assert abs(best.satisfied - best.result.satisfied) <= 1
 
 
+@pytest.mark.acceptance
 def test_report_of_an_investigation(outcome, monkeypatch, tmp_path):
     monkeypatch.setattr(chandiramani, "investigate", lambda n_jobs, report: outcome[0])
     told = []
