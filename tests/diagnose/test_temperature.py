@@ -7,9 +7,7 @@ from tests.diagnose.rigs import FORCE, HEAD, LOOP, PLACE, oscillator, saved
 from wedgesweep import api
 from wedgesweep.diagnose.diagnosis import data_of, excluded_effects
 from wedgesweep.diagnose.evaluation import Point, Scenario
-from wedgesweep.effects import thermal_drift
 from wedgesweep.errors import InputError
-from wedgesweep.systems.suspension import parameters
 
 MODEL = oscillator(mass_kg=1.0, spring_N_per_mm=0.2, normal_force_N=10.0)
 # Temperatures (deg C) of four tests, and amplitudes (mm), which do not grow with them.
@@ -38,15 +36,6 @@ def write(folder, friction=by_temperature, temperatures=TEMPERATURES):
 
 def constant(temperature, velocity):
     return 3.0 * np.sign(velocity)
-
-
-@pytest.mark.parametrize(("share", "ratio"), [(0.01, 1.5), (-0.01, 0.5), (-0.03, 0.0), (0.0, 1.0)])
-def test_friction_changes_by_its_share_of_the_value_per_kelvin(share, ratio):
-    cold, warm = (parameters.record("coulomb", 1e-3, 60.0)[0] for _ in range(2))
-    thermal_drift.adjust(warm, share, 70.0, 20.0)
-    for coefficient in ("mu_s", "mu_d"):
-        expected = ratio * cold["friction"][coefficient]
-        assert warm["friction"][coefficient] == pytest.approx(expected, abs=1e-15)
 
 
 @pytest.mark.parametrize("reference", [20.0, 10.0])
