@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 
+from wedgesweep.config import Config
 from wedgesweep.diagnose import score_test, verdict, work
 from wedgesweep.diagnose.calibration import calibrate
 from wedgesweep.diagnose.concatenation import joined
@@ -373,24 +374,24 @@ def excluded_effects(measurement: Measurement) -> dict[str, str]:
     model = measurement.model
     # Recorded loads always differ a little.
     alike = ALIKE if NORMAL_FORCE in measurement.columns else 1.0
+    models = [measurement.model_of(test) for test in measurement.tests]
     differ = False
     if model.system == OSCILLATOR:
-        loads = [measurement.model_of(test).oscillator["normal_force"] for test in measurement.tests]
+        loads = [each.oscillator["normal_force"] for each in models]
         differ = max(loads) > alike * min(loads)
     contained = [name for name in acting(model.effects) if name not in SCALES]
     return (
         model.excluded_effects(differ, measurement.kinds == (LOOP,))
-        | _hidden_by_circumstance(measurement)
+        | _of_one_condition(models)
         | dict.fromkeys(contained, IN_BASE)
     )
 
 
-def _hidden_by_circumstance(measurement: Measurement) -> dict[str, str]:
-    """Effects that follow a number which is the same in all tests, and why they do not show."""
+def _of_one_condition(models: Sequence[Config]) -> dict[str, str]:
+    """Effects whose operating condition is the same in the models of all tests, and why they do not show."""
     found = {}
-    models = [measurement.model_of(test) for test in measurement.tests]
     for name, effect in EFFECTS.items():
-        if (stated := effect.circumstance) is not None:
+        if (stated := effect.condition) is not None:
             values = {model.effects.get(name, effect.off)[stated.name] for model in models}
             if len(values) == 1:
                 found[name] = f"shows only where {stated.key} differs from test to test"

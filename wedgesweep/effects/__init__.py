@@ -59,7 +59,7 @@ def of_system(system: str) -> tuple[str, ...]:
 def merge(own: Numbers, added: Numbers) -> dict[str, dict[str, float]]:
     """Numbers of effects with others beside them, or in their place; what scales a number scales it again.
 
-    The circumstance of an effect (the temperature of a test) stays what it is.
+    The operating condition of an effect (the temperature of a test) stays what it is.
     """
     scaled = {
         name: {"scale": own.get(name, {}).get("scale", 1.0) * added[name]["scale"]}
@@ -67,14 +67,14 @@ def merge(own: Numbers, added: Numbers) -> dict[str, dict[str, float]]:
         if name in added
     }
     return {
-        name: {**numbers, **_circumstances(name, own.get(name, {}))}
+        name: {**numbers, **_conditions(name, own.get(name, {}))}
         for name, numbers in {**own, **added, **scaled}.items()
     }
 
 
-def _circumstances(name: str, numbers: Mapping[str, float]) -> dict[str, float]:
-    """Of an effect's numbers, by name or by key, those of its circumstance: no fit looks for them."""
-    if EFFECTS[name].circumstance is None:
+def _conditions(name: str, numbers: Mapping[str, float]) -> dict[str, float]:
+    """An effect's operating condition and its reference, by name or by key: no fit looks for them."""
+    if EFFECTS[name].condition is None:
         return {}
     stated = {each for q in EFFECTS[name].quantities if q.search is None for each in (q.key, q.name)}
     return {key: value for key, value in numbers.items() if key in stated}

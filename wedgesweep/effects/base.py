@@ -35,8 +35,8 @@ class Effect:
     comes as close to them as it likes. ``systems``: those that have the part which it acts on. ``excludes``:
     effects that cannot be in one model with it. ``acts_on``: effects whose force it changes; in a model
     without other friction it shows beside them only. ``of_loops``: a diagnosis looks for it in loops; beside
-    other tests only where it is asked to. ``circumstance``: a quantity that tests state, and that must differ
-    between them or nothing shows.
+    other tests only where it is asked to. ``condition``: an operating condition that tests state; the effect
+    shows only where it differs between them.
     ``meaning`` may hold names of PARTS in braces; see ``described``.
     """
 
@@ -52,7 +52,7 @@ class Effect:
     excludes: tuple[str, ...] = ()
     acts_on: tuple[str, ...] = ()
     of_loops: bool = False
-    circumstance: Quantity | None = None
+    condition: Quantity | None = None
 
     def described(self, system: str = SUSPENSION) -> str:
         """What the effect is, in words, on a system."""

@@ -30,7 +30,7 @@ EFFECT = Effect(
         TEMPERATURE,
         Quantity("reference_C", 20.0, "temperature at which the coefficients are the nominal ones"),
     ),
-    circumstance=TEMPERATURE,
+    condition=TEMPERATURE,
 )
 
 

@@ -70,7 +70,7 @@ def read(path: Path, model: Path | None = None) -> Measurement:
         problems += [f"{path}: {_at(fault)}" for fault in faults]
     if config is not None:
         problems += [f"{model}: {fault}" for fault in channels.model_faults(config, columns, by_kind)]
-        problems += _override_faults(path, measurement, config)
+        problems += _temperature_faults(path, measurement) + _override_faults(path, measurement, config)
     tests = _tests(path, measurement, config, problems)
     if problems or config is None:
         raise MeasuredError(problems)
@@ -129,19 +129,23 @@ def _at(fault: str) -> str:
 
 def _override_faults(path: Path, measurement: dict[str, Any], config: Config) -> list[str]:
     """Numbers of single tests that the model does not have, or that are out of range."""
-    tests, key = measurement.get("test", ()), TEMPERATURE.key
-    # A test without one would be simulated at the reference.
-    without = [i for i, given in enumerate(tests) if key not in given]
-    missing = f"{key}: missing; other tests state it, and this one must"
-    faults = [
-        f"{path}: measurement.test[{i}].{missing}" for i in (without if len(without) < len(tests) else ())
-    ]
-    for i, given in enumerate(tests):
+    faults: list[str] = []
+    for i, given in enumerate(measurement.get("test", ())):
         try:
             with_numbers(config, given.get("model", {}), f"{path}: measurement.test[{i}].model")
         except ConfigError as error:
             faults += error.problems
     return faults
+
+
+def _temperature_faults(path: Path, measurement: dict[str, Any]) -> list[str]:
+    """Tests without a temperature beside others that state it: they would be simulated at the reference."""
+    tests, key = measurement.get("test", ()), TEMPERATURE.key
+    without = [i for i, given in enumerate(tests) if key not in given]
+    if len(without) == len(tests):
+        return []
+    fault = f"{key}: missing; other tests state it, and this one must"
+    return [f"{path}: measurement.test[{i}].{fault}" for i in without]
 
 
 def _document(path: Path, model: Path | None, problems: list[str]) -> dict[str, Any]:

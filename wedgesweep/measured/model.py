@@ -41,7 +41,7 @@ def with_numbers(model: Config, numbers: Mapping[str, float], source: str = "mod
     ConfigError
         If a name is unknown or a number is out of range.
     """
-    known = [*_numbers(model.written), *_circumstances(model.system)]
+    known = [*_numbers(model.written), *_conditions(model.system)]
     unknown = [name for name in numbers if name not in known]
     if unknown:
         problem = "the model has no such number"
@@ -52,9 +52,9 @@ def with_numbers(model: Config, numbers: Mapping[str, float], source: str = "mod
     return replace(changed, nominal_load=model.oscillator["normal_force"])
 
 
-def _circumstances(system: str) -> list[str]:
-    """Names of what tests may state of effects, whether the model has these or not."""
-    found = [(name, EFFECTS[name].circumstance) for name in of_system(system)]
+def _conditions(system: str) -> list[str]:
+    """Operating conditions by name: tests may state them whether the model has the effect or not."""
+    found = [(name, EFFECTS[name].condition) for name in of_system(system)]
     return [f"effects.{name}.{each.key}" for name, each in found if each is not None]
 
 

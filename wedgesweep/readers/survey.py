@@ -189,7 +189,7 @@ def _is_data(row: Sequence[str]) -> bool:
 
 
 def _single_numbers(lines: Sequence[str], how: Dialect, columns: Sequence[int]) -> dict[str, float]:
-    """Numbers by name: of lines above the columns, and those that stand once below a name there."""
+    """Numbers by name: in lines above the columns, or once below a name where the columns begin."""
     found = {}
     for line in lines[: how.first]:
         if len(line) <= LONGEST and (pair := NAMED_NUMBER.fullmatch(line)):

@@ -64,10 +64,8 @@ class Truth:
 
     def record(self, test: TrueTest) -> np.ndarray:
         """Parameters of a test for the solver, shape (1,)."""
-        amplitude, omega = (
-            test.amplitude * self.config.amplitude_unit.factor,
-            2.0 * pi * test.plan.frequency_hz,
-        )
+        amplitude = test.amplitude * self.config.amplitude_unit.factor
+        omega = 2.0 * pi * test.plan.frequency_hz
         record = self.config.record_with(self.effects_in(test), self.law, amplitude, omega)
         if test.stray_phase_deg is not None:
             record[STRAY]["phase"] = np.radians(test.stray_phase_deg)
