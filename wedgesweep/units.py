@@ -12,7 +12,7 @@ INCH, FOOT, POUND, GRAVITY = 0.0254, 0.3048, 4.4482216152605, 9.80665
 POUND_MASS = 0.45359237
 PREFIXES = {"n": 1e-9, "u": 1e-6, "m": 1e-3, "c": 1e-2, "k": 1e3, "M": 1e6}
 TURN = 6.283185307179586
-# Units of time whose zero is a date: ISO 8601 texts, serial days of Excel, seconds since 1970.
+# Units of time whose zero is a date: texts, serial days of Excel, seconds since 1970.
 DAY = 86400.0
 DATES = {"datetime": 1.0, "excel": DAY, "epoch": 1.0}
 
@@ -64,9 +64,15 @@ SPELLINGS = {
     "\u00b5": "u",
     "\u03bc": "u",
     "\u00b7": " ",
+    "\u207b": "-",
+    "\u00b9": "1",
 }
+# A power of a second at the end of a product, and the date behind a unit of time, as netCDF has them.
+PER_SECOND, SINCE = re.compile(r"[ .*]s\^?-([12])$"), re.compile(r" since \S.*$")
+POWERS_OF_RATES = {"1": "/s", "2": "/s^2"}
 WORDS = {
     **{"sec": "s", "secs": "s", "seconds": "s", "second": "s", "msec": "ms"},
+    **{"milliseconds": "ms", "microseconds": "us", "minutes": "min"},
     **{
         "\u00b0": "deg",
         "\u00b0/s": "deg/s",
@@ -74,7 +80,8 @@ WORDS = {
         "inches": "in",
         "G": "g",
         "lbs": "lb",
-        "rev/min": "rpm",
+        **dict.fromkeys(("rev/min", "r/min", "1/min", "min-1", "min^-1", "u/min", "tr/min"), "rpm"),
+        **{"\u00b0C": "degC", "\u00b0F": "F", "dps": "deg/s"},
         **dict.fromkeys(("newton", "newtons"), "N"),
         **dict.fromkeys(("degree", "degrees"), "deg"),
         **dict.fromkeys(("radian", "radians"), "rad"),
@@ -93,9 +100,10 @@ def angular(unit: str) -> bool:
 
 
 def usual(unit: str) -> str:
-    """A unit in the spelling used here: m/s2 is m/s^2, and a micro sign is u."""
+    """A unit in the spelling used here: m/s2 and m s-2 are m/s^2, a micro sign is u, s since a date is s."""
     for other, own in SPELLINGS.items():
         unit = unit.replace(other, own)
+    unit = PER_SECOND.sub(lambda found: POWERS_OF_RATES[found[1]], SINCE.sub("", unit))
     return WORDS.get(unit) or WORDS.get(unit.lower(), unit)
 
 

@@ -14,6 +14,8 @@ from tests.fixture_measured import MEASURED, csv_lines, lines, vibration
 from wedgesweep import measured, readers
 from wedgesweep.measured.build import shortened
 from wedgesweep.readers.survey import survey
+from wedgesweep.readers.table import seconds_of_dates
+from wedgesweep.units import usual
 
 
 @pytest.fixture(scope="module")
@@ -428,3 +430,46 @@ def test_a_long_free_motion_keeps_a_hundred_samples_per_period(tmp_path):
     kept = test.time - test.time[0]
     begun = np.interp(kept + t[200], t, swing)  # the filter takes 20 of the samples that remain at either end
     np.testing.assert_allclose(test.displacement, begun, atol=2e-8)
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "apart"),
+    [
+        ("05/06/2024 11:59:59.500 AM", "05/06/2024 12:00:00.250 PM", 0.75),
+        ("31.12.23 23:59:59,5", "1.1.24 0:00:01,25", 1.75),
+        ("05/06/2024 23:59:59", "06/06/2024 00:00:01", 2.0),
+        ("05/06/2024 23:59:59", "05/07/2024 00:00:01", 2.0),
+        ("12:59:59 PM", "01:00:01 PM", 2.0),
+        ("2024/5/6 9:59:59", "2024/5/6 10:00:01", 2.0),
+    ],
+)
+def test_dates_are_read_as_they_are_written(first, second, apart):
+    seconds, faults = seconds_of_dates([first, second])
+    assert np.diff(seconds)[0] == pytest.approx(apart)
+    assert not faults
+
+
+def test_structs_of_a_new_matlab_tell_names_and_units(tmp_path):
+    with pytest.importorskip("h5py").File(tmp_path / "one.mat", "w") as file:
+        for path, values, kind in (
+            ("run/speed/Data", np.arange(20.0), "double"),
+            ("run/speed/Unit", np.array([ord(letter) for letter in "1/min"], "u2"), "char"),
+        ):
+            file[path] = values
+            file[path].attrs["MATLAB_class"] = np.bytes_(kind)
+    (column,) = survey(tmp_path / "one.mat").columns
+    assert (column.group, column.label, column.channel.unit) == ("run", "speed", "1/min")
+
+
+def test_lists_in_lines_that_some_lines_lack(tmp_path):
+    lines = ['{"event": "start"}', *(f'{{"t": {i}, "imu": {{"gyro": [{i}, 1, 2]}}}}' for i in range(9))]
+    (tmp_path / "one.jsonl").write_text("\n".join(lines))
+    values = readers.read(tmp_path / "one.jsonl", ["imu.gyro[1]"]).channels["imu.gyro[1]"].values
+    np.testing.assert_array_equal(values, [np.nan, *range(9)])
+
+
+@pytest.mark.parametrize(
+    ("written", "unit"), [("m s-2", "m/s^2"), ("rad·s⁻¹", "rad/s"), ("seconds since 2024-05-06", "s")]
+)
+def test_units_of_netcdf(written, unit):
+    assert usual(written) == unit

@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Iterator, Mapping
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -9,13 +10,11 @@ import numpy as np
 
 from wedgesweep.processes import apart
 from wedgesweep.readers import hdf5
-from wedgesweep.readers.table import Channel, Wanted
+from wedgesweep.readers.table import NAME_FIELDS, UNIT_FIELDS, Channel, Wanted
 
 HDF5_MARK = b"\x89HDF\r\n\x1a\n"
 # A v7.3 file of MATLAB is HDF5 behind a header of this length.
 MATLAB_HEADER = 512
-# Fields of a struct with the unit and the name of its samples.
-UNIT_FIELDS, NAME_FIELDS = ("unit", "units"), ("name", "label", "title")
 # Greatest size of integer samples, so that full scale is 1; 8-bit samples are counted from 128.
 FULL_SCALE = {
     "i": lambda dtype: -float(np.iinfo(dtype).min),
@@ -69,9 +68,9 @@ def json_text(file: Path, wanted: Wanted) -> dict[str, Channel | None]:
 
 
 def _lists(value: Any, path: str = "") -> Iterator[tuple[str, Any]]:
-    if isinstance(value, list) and value and all(isinstance(each, dict) for each in value):
-        keys = dict.fromkeys(key for each in value for key in each)
-        value = {key: [each.get(key) for each in value] for key in keys}
+    if isinstance(value, list) and any(isinstance(each, dict) for each in value):
+        rows = [each if isinstance(each, dict) else {} for each in value]
+        value = {key: [each.get(key) for each in rows] for key in dict.fromkeys(chain(*rows))}
     if not isinstance(value, dict):
         yield path, value
         return
@@ -81,6 +80,9 @@ def _lists(value: Any, path: str = "") -> Iterator[tuple[str, Any]]:
 
 def _samples(values: Any) -> np.ndarray:
     """Samples, NaN where null; what is no array of numbers stays as it is."""
+    row = next((each for each in values if isinstance(each, list)), []) if isinstance(values, list) else []
+    if row:
+        values = [[None] * len(row) if each is None else each for each in values]
     try:
         return np.asarray(values, float)
     except (TypeError, ValueError, OverflowError):

@@ -12,7 +12,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-from wedgesweep.readers.table import ISO, Name, place_of, split_unit
+from wedgesweep.readers.table import DATE, Name, place_of, split_unit
 from wedgesweep.units import UNITS, usual
 
 DELIMITERS = {"comma": ",", "semicolon": ";", "tab": "\t", "space": " "}
@@ -120,11 +120,14 @@ def _encoding(content: bytes) -> str:
         return "utf-16-le"
     if content[0:200:2].count(0) > content[1:200:2].count(0):
         return "utf-16-be"
-    try:
-        content.decode("utf-8")
-    except UnicodeDecodeError:
-        return "latin-1"
-    return "utf-8"
+    # Pairs of bytes of GB 2312 are hardly ever a text of any other language, whose letters are single bytes.
+    for encoding, found in (("utf-8", "utf-8"), ("gb2312", "gb18030")):
+        try:
+            content.decode(encoding)
+        except UnicodeDecodeError:
+            continue
+        return found
+    return "latin-1"
 
 
 def split(line: str, delimiter: str) -> list[str]:
@@ -172,7 +175,7 @@ def is_skipped(line: str) -> bool:
 
 def is_number(cell: str) -> bool:
     """Whether a cell may be a sample: a number with either decimal sign, a date, or missing."""
-    return cell in MISSING or DECIMAL.fullmatch(cell) is not None or ISO.match(cell) is not None
+    return cell in MISSING or DECIMAL.fullmatch(cell) is not None or DATE.match(cell) is not None
 
 
 def _candidates(lines: Sequence[str], stated: Mapping[str, Any]) -> Iterator[tuple[int, str, list[str]]]:

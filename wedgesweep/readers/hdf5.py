@@ -8,7 +8,10 @@ import numpy as np
 
 from wedgesweep.processes import apart
 from wedgesweep.readers.extras import module
-from wedgesweep.readers.table import Channel, Wanted
+from wedgesweep.readers.table import NAME_FIELDS, UNIT_FIELDS, Channel, Wanted
+
+# The attribute in which MATLAB says what a dataset is.
+CLASS = "MATLAB_class"
 
 
 def hdf5(file: Path, wanted: Wanted) -> dict[str, Channel | None]:
@@ -20,6 +23,7 @@ def _hdf5(h5py: Any, file: Path, wanted: Wanted) -> dict[str, Channel | None]:
     with h5py.File(file, "r") as opened:
         sets: list[Any] = []
         opened.visititems(lambda _, each: sets.append(each) if isinstance(each, h5py.Dataset) else None)
+        sets = [each for each in sets if not _word(each)]
         listed = [(name, each, column) for each in sets for name, column in _columns(each)]
         return {
             name: _channel(stored, column) if wanted(name, number) else None
@@ -41,8 +45,18 @@ def _channel(stored: Any, column: Any) -> Channel:
     """A dataset or a column of it; MATLAB writes the dimensions of its arrays in reverse."""
     unit = stored.attrs.get("units", stored.attrs.get("unit", ""))
     unit = unit.decode("utf-8", "replace") if isinstance(unit, bytes) else str(unit)
-    values = np.transpose(stored[()]) if "MATLAB_class" in stored.attrs else stored[()]
-    return Channel(values if column is ... else values[column], unit)
+    if CLASS not in stored.attrs:
+        return Channel(stored[()] if column is ... else stored[()][column], unit)
+    words = {name.lower(): word for name, each in stored.parent.items() if (word := _word(each))}
+    unit, label = (next(filter(None, map(words.get, keys)), "") for keys in (UNIT_FIELDS, NAME_FIELDS))
+    return Channel(np.transpose(stored[()]), unit, label=label)
+
+
+def _word(stored: Any) -> str:
+    """The text of MATLAB's characters; empty for anything else."""
+    if stored.attrs.get(CLASS) != b"char":
+        return ""
+    return "".join(map(chr, stored[()].ravel().tolist()))
 
 
 def netcdf(file: Path, wanted: Wanted) -> dict[str, Channel | None]:

@@ -26,6 +26,7 @@ FEWEST_ROWS = 8
 WIDEST = 64
 # Group and name of a variable in it: group/name, Sheet!name, structure.name; not the unit m/s in brackets.
 GROUP = re.compile(r"([^\[(]*)[/!.]([^/!.].*)", re.DOTALL)
+SAMPLES = re.compile(r"data|daten|values?|samples", re.IGNORECASE)
 # Cells of a header of words between spaces: a unit in brackets belongs to the word before it.
 WORDS = re.compile(r"[^\s\[(]+(?:\s*[\[(][^\])]*[\])])?")
 # A line that names a number, with its unit before or behind it; its greatest length; and factors of units.
@@ -47,12 +48,19 @@ class Everything(Wanted):
 
 @dataclass(frozen=True, eq=False)
 class Column:
-    """A channel as a file holds it; ``words``: the cells above it, from the top; ``group``: where it is."""
+    """A channel as a file holds it.
+
+    ``words``: the cells above it, from the top; ``group``: where it is; ``missing``: texts that stand for a
+    missing sample; ``rate`` (Hz) and ``start`` (s): of a clock of its own beside that of the others, or 0.
+    """
 
     name: Name
     words: tuple[str, ...]
     channel: Channel
     group: str = ""
+    missing: tuple[str, ...] = ()
+    rate: float = 0.0
+    start: float = 0.0
 
     @property
     def label(self) -> str:
@@ -111,9 +119,12 @@ def _variables(name: str, raw: Channel) -> list[Column]:
 
 
 def _within(name: str) -> tuple[str, str]:
-    """Group, sheet or structure of a variable, and its name there."""
+    """Group, sheet or structure of a variable, and its name there: of its samples that of what holds them."""
     found = GROUP.fullmatch(name)
-    return (found[1], found[2]) if found else ("", name)
+    if not found:
+        return "", name
+    inside = SAMPLES.fullmatch(found[2]) and GROUP.fullmatch(found[1])
+    return (inside[1], inside[2]) if inside else (found[1], found[2])
 
 
 def _of_text(path: Path) -> Survey:

@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from typing import Any
@@ -15,11 +16,17 @@ from wedgesweep.units import DAY
 Name = str | int
 # The unit of time stamps that are dates; their values are seconds since midnight of the first day.
 DATETIME = "datetime"
-ISO = re.compile(r"\s*(\d{4}-\d\d-\d\d[T ]\d\d:\d\d|\d\d:\d\d:\d\d)")
+# A date in any order, which may be missing; a time of day; what follows it, or AM and PM.
+DATE = re.compile(
+    r"\s*(?:(\d{1,4})([-./])(\d{1,2})\2(\d{1,4})(?:T|\s+))?"
+    r"(\d{1,2})(:\d\d(?(1)|:\d\d)[^\sAaPp]*)\s*([AaPp])?[.Mm]*\s*$"
+)
 # The day of times without one.
-DAYLESS, DAYLESS_YEAR = "1970-01-01 ", 1970
+DAYLESS, DAYLESS_YEAR = "1970-01-01", 1970
 # The second of several columns with a name, and a column of a matrix.
 REPEATED, OF_A_MATRIX = re.compile(r"(.*)#(\d+)"), re.compile(r"(.*)\[(\d+)\]")
+# Fields of a struct with the unit and the name of its samples.
+UNIT_FIELDS, NAME_FIELDS = ("unit", "units", "einheit"), ("name", "label", "title")
 BRACKETS = re.compile(r"(.*?)\s*[\[(]([^\[\]()]*)[\])]\s*")
 
 
@@ -82,18 +89,28 @@ def split_unit(header: str) -> tuple[str, str]:
 
 
 def seconds_of_dates(values: Sequence[Any]) -> tuple[np.ndarray, dict[int, str]]:
-    """Seconds (n,) since midnight of the first day, and faults: of ISO 8601 texts, dates or None."""
+    """Seconds (n,) since midnight of the first day, and faults: of texts, dates or None.
+
+    Where the year is last, the day or the month is first, whichever makes the shorter record.
+    """
+    texts = [value for value in values if isinstance(value, str) and DATE.match(value)]
+    spans = {}
+    for day_first in (False, True):
+        with suppress(ValueError):
+            start, end = (
+                datetime.fromisoformat(_iso(text, day_first)[:10]) for text in (texts[:1] + texts[-1:])
+            )
+            spans[abs(end - start)] = day_first
+    day_first = spans[min(spans)] if spans else False
     first: datetime | None = None
     seconds, faults = np.full(len(values), np.nan), {}
     for row, value in enumerate(values):
         if value is None or value in ("", "nan") or value != value:
             continue
         try:
-            text = str(value).strip()
-            dated = DAYLESS + text if text[2:3] == ":" else text
-            stamp = value if isinstance(value, datetime) else datetime.fromisoformat(dated)
+            stamp = value if isinstance(value, datetime) else datetime.fromisoformat(_iso(value, day_first))
         except ValueError:
-            faults[row] = f"{show(str(value))} is no ISO 8601 date or time"
+            faults[row] = f"{show(str(value))} is no date or time"
             continue
         stamp = stamp.astimezone(UTC) if stamp.tzinfo else stamp.replace(tzinfo=UTC)
         first = first or stamp.replace(hour=0, minute=0, second=0, microsecond=0)
@@ -103,6 +120,23 @@ def seconds_of_dates(values: Sequence[Any]) -> tuple[np.ndarray, dict[int, str]]
         known = np.isfinite(seconds)
         seconds[known] = np.unwrap(seconds[known], period=DAY)
     return seconds, faults
+
+
+def _iso(value: Any, day_first: bool) -> str:
+    """A date or time as ISO 8601 has it; what is none stays as it is."""
+    text = str(value).strip()
+    found = DATE.match(text)
+    if not found:
+        return text
+    start, _, middle, end, hour, rest, half = found.groups()
+    if half:
+        hour = str(int(hour) % 12 + 12 * (half in "Pp"))
+    day = DAYLESS
+    if start:
+        year, month, date = (start, middle, end) if len(start) > 2 else (end, start, middle)
+        month, date = (date, month) if day_first and len(start) <= 2 else (month, date)
+        day = f"{year:0>4}-{month:0>2}-{date:0>2}"
+    return f"{day} {hour:0>2}{rest}"
 
 
 def channel_of(values: Any, unit: str = "", clock: np.ndarray | None = None) -> Channel:
@@ -117,7 +151,7 @@ def channel_of(values: Any, unit: str = "", clock: np.ndarray | None = None) -> 
         micro = array.astype("datetime64[us]")
         days = micro - micro[:1].astype("datetime64[D]")
         return Channel(days / np.timedelta64(1, "s"), DATETIME, clock)
-    if array.dtype.kind in "OUS" and array.size and (isinstance(array[0], datetime) or _is_iso(array[0])):
+    if array.dtype.kind in "OUS" and array.size and (isinstance(array[0], datetime) or _is_date(array[0])):
         seconds, faults = seconds_of_dates(list(array))
         return Channel(seconds, DATETIME, clock, faults)
     if array.dtype.kind not in "fiu" or not array.size:
@@ -128,8 +162,8 @@ def channel_of(values: Any, unit: str = "", clock: np.ndarray | None = None) -> 
     return Channel(numbers, unit, clock, {row: f"{numbers[row]} is not a finite number" for row in infinite})
 
 
-def _is_iso(value: Any) -> bool:
-    return ISO.match(value.decode("latin-1") if isinstance(value, bytes) else str(value)) is not None
+def _is_date(value: Any) -> bool:
+    return DATE.match(value.decode("latin-1") if isinstance(value, bytes) else str(value)) is not None
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ from wedgesweep.formatting import counted
 from wedgesweep.hints import hint, show
 from wedgesweep.readers import dialect as csv_dialect
 from wedgesweep.readers.dialect import Dialect
-from wedgesweep.readers.table import DATETIME, ISO, Channel, Name, ReadError, Table, seconds_of_dates
+from wedgesweep.readers.table import DATE, DATETIME, Channel, Name, ReadError, Table, seconds_of_dates
 
 
 def read(path: Path, names: Sequence[Name], stated: Mapping[str, Any] | None = None) -> Table:
@@ -132,7 +132,7 @@ def _columns(lines: Sequence[str], dialect: Dialect) -> tuple[list[list[str]], t
 def _channel(cells: list[str], name: str, unit: str, signs: tuple[str, str], missing: set[str]) -> Channel:
     """Numbers or dates in the cells of a column; ``signs``: of decimals and of thousands."""
     first = next((cell for cell in cells if cell not in missing), "")
-    if ISO.match(first):
+    if DATE.match(first):
         seconds, faults = seconds_of_dates(["" if cell in missing else cell for cell in cells])
         return Channel(seconds, DATETIME, faults={row: f"{name}: {fault}" for row, fault in faults.items()})
     decimal, thousands = signs
