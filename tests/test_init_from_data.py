@@ -13,6 +13,7 @@ from tests import fixture_formats
 from tests.command import invoke
 from tests.fixture_measured import vibration
 from wedgesweep import measured
+from wedgesweep.diagnose.loop.loop_data import loop_data
 from wedgesweep.diagnose.transient.from_measurement import transient_data
 from wedgesweep.guess import first_files
 from wedgesweep.measured import consistency
@@ -664,3 +665,98 @@ def test_an_oscilloscope_names_channels_by_number_and_states_its_interval(tmp_pa
     assert test.sampling_rate == pytest.approx(RATE)
     np.testing.assert_allclose(test.displacement, 1e-3 * d / 20.0, atol=1e-7)
     np.testing.assert_allclose(test.force, f / 10.0, atol=1e-3)
+
+
+def test_a_force_that_strikes_a_mass_has_the_sign_that_explains_its_motion(tmp_path):
+    """From rest under a half sine, with an accelerometer that points the other way."""
+    mass, omega, width = 2.0, 2.0 * np.pi * 12.0, 0.01
+    t = np.arange(4096) / 2048.0
+    pulse = np.where((t >= 0.2) & (t < 0.2 + width), 100.0 * np.sin(np.pi * (t - 0.2) / width), 0.0)
+    filtered = signal.lti([1.0, 0.0, 0.0], [mass, 0.02 * mass * omega, mass * omega**2])
+    _, a, _ = signal.lsim(filtered, pulse, t)
+    noise = np.random.default_rng(0).normal(size=(2, t.size))
+    text(
+        tmp_path / "one.csv",
+        t,
+        pulse + 0.1 * noise[0],
+        -a + 0.02 * noise[1],
+        header="t,Hammer (N),Acc (m/s^2)",
+    )
+    found = begun(tmp_path, tmp_path / "one.csv")
+    assert found.model.oscillator["mass"] == pytest.approx(mass, rel=0.06)
+    assert found.tests[0].input.min() < -90.0
+
+
+def test_columns_on_two_clocks_in_one_file_meet(tmp_path):
+    """The second time has fewer samples and begins later; both motions are one sine."""
+    t, slow = np.arange(4000) / 1000.0, 0.5 + np.arange(800) / 250.0
+    force, place = (size * np.sin(2.0 * np.pi * 2.0 * each) for size, each in ((30.0, t), (5.0, slow)))
+    rows = [f"{a:.4f}\t{b:.4f}" for a, b in zip(t, force + 3.0 * np.cos(4.0 * np.pi * t), strict=True)]
+    rows = [
+        f"{row}\t{slow[i]:.4f}\t{place[i]:.5f}" if i < slow.size else f"{row}\t\t"
+        for i, row in enumerate(rows)
+    ]
+    (tmp_path / "one.txt").write_text("\n".join(["Time (a)\tLoad (N)\tTime (b)\tLVDT (mm)", *rows]))
+    found = begun(tmp_path, tmp_path / "one.txt").tests[0]
+    ratio = np.sin(2.0 * np.pi * 2.0 * found.time)
+    np.testing.assert_allclose(1e3 * found.displacement, 5.0 * ratio, atol=1e-3)
+
+
+def test_each_release_in_a_record_is_a_test(tmp_path):
+    _, x = decay()
+    both = np.r_[x, 0.7 * x, x]
+    path = text(tmp_path / "one.csv", np.arange(both.size) / RATE, both, header="t (s),x (mm)")
+    found = begun(tmp_path, path)
+    assert [test.duration for test in found.tests] == pytest.approx([3.0] * 3, abs=0.3)
+    one = tmp_path / "measured.toml"
+    one.write_text(
+        one.read_text().partition("[[measurement.test]]")[0] + '[[measurement.test]]\nfile = "one.csv"\n'
+    )
+    with pytest.raises(measured.MeasuredError, match=r"the motion grows again at 2\.\d* s, 6\.\d* s"):
+        measured.read(one)
+
+
+def test_two_speeds_without_names_are_base_and_mass_and_an_accelerometer_on_a_shaft_is_left_out(tmp_path):
+    t = np.arange(20000) / RATE
+    base, mass = (np.gradient(each, t) for each in (np.sin(19.0 * t), 1.3 * np.sin(19.0 * t - 0.3)))
+    header = "t (s),n1 (1/min),n2 (1/min),a (g)"
+    path = text(tmp_path / "one.csv", t, 800.0 + base, 800.0 + mass, 0.01 * mass, header=header)
+    columns = begun(tmp_path, path).columns
+    assert columns["velocity"]["column"] == "n2 (1/min)"
+    assert columns["input"]["column"] == "n1 (1/min)"
+    assert "acceleration" not in columns
+
+
+def test_a_number_that_stands_for_missing_samples_is_stated(tmp_path):
+    """In text that is Chinese, in its own encoding, with the load that makes friction a coefficient."""
+    t, d, f = loop(mass=0.0, damping=0.0)
+    load = np.where(
+        np.arange(t.size) % 500 == 7, -999.0, 100.0 + 0.1 * np.random.default_rng(1).normal(size=t.size)
+    )
+    f = np.where(load < 0.0, load, f)
+    text(tmp_path / "one.csv", t, d, f, load, header="时间(s),位移(mm),摩擦力(N),载荷(N)")
+    (tmp_path / "one.csv").write_bytes((tmp_path / "one.csv").read_text().encode("gbk"))
+    found = begun(tmp_path, tmp_path / "one.csv")
+    assert found.columns["force"]["missing"] == ["-999"]
+    assert found.tests[0].model == {"oscillator.normal_force_N": pytest.approx(100.0, abs=0.1)}
+    assert np.abs(found.tests[0].force).max() < 30.0
+
+
+def test_a_force_under_a_velocity_alone_is_a_loop(tmp_path):
+    """The integral of the velocity is the displacement, whatever the zero of its sensor."""
+    t = np.arange(6000) / 500.0
+    omega, (one, other) = 2.0 * np.pi * 1.6, np.random.default_rng(0).normal(size=(2, t.size))
+    speed = 0.025 * omega * np.cos(omega * t)
+    force = 600.0 * speed + 40.0 * np.sign(speed) - 180.0 + 2.0 * one
+    text(
+        tmp_path / "one.csv", t, 1e3 * speed + 7.0 + 0.2 * other, force, header="t_s,shaft_speed_mm_s,load_N"
+    )
+    found = begun(tmp_path, tmp_path / "one.csv")
+    test = found.tests[0]
+    assert test.kind == "loop"
+    np.testing.assert_allclose(
+        test.displacement - test.displacement.mean(), 0.025 * np.sin(omega * t), atol=5e-4
+    )
+    assert found.model.oscillator["damping"] == pytest.approx(600.0, rel=0.05)
+    (recorded,) = loop_data(found).recordings
+    assert 0.05e-3 < recorded.motion.noise[1] < 0.2e-3

@@ -12,6 +12,7 @@ from tests.fixture_measured import MEASURED, csv_lines, vibration
 from wedgesweep import measured
 from wedgesweep.measured import consistency
 from wedgesweep.measured.clock import fit_clock, resolution
+from wedgesweep.measured.signals import stuck_samples
 
 RANDOM = np.random.default_rng(5)
 
@@ -299,3 +300,15 @@ def test_a_force_that_gives_out_energy_has_the_wrong_sign(tmp_path, model):
     (told,) = consistency.warnings(measured.read(path))
     assert "loop0.csv: force gives out energy" in told
     assert "write sign = -1 at force in [measurement.columns]" in told
+
+
+def test_a_sensor_that_hangs_lacks_samples_and_one_that_rests_does_not():
+    t = np.arange(2000) / 200.0
+    x = np.sin(3.0 * t) + 1e-3 * np.random.default_rng(0).normal(size=t.size)
+    hung = np.where((t > 4.0) & (t < 4.2), x[800], x)
+    assert np.flatnonzero(stuck_samples(hung)).tolist() == list(range(801, 840))
+    assert not stuck_samples(x).any()
+    assert not stuck_samples(np.clip(x, -0.9, 0.9)).any()
+    resting = np.clip(np.abs(t - 5.0), 1.0, None) + np.where(np.abs(t - 5.0) > 1.0, 1e-4 * x, 0.0)
+    assert not stuck_samples(resting).any()
+    assert not stuck_samples(np.round(x, 1)).any()

@@ -50,7 +50,10 @@ def print_measurement(measurement: "Measurement") -> None:
 def _table(measurement: "Measurement") -> list[tuple[str, ...]]:
     """Headings, units and a row for each of the tests of one kind, in the units of the model."""
     rows = _rows(measurement)
-    return [tuple(map(rotation.in_units, row)) for row in rows] if measurement.model.turns else rows
+    if not measurement.model.turns:
+        return rows
+    headings, units, *tests = rows
+    return [tuple(map(rotation.in_units, row)) for row in (headings, map(rotation.prose, units), *tests)]
 
 
 def _rows(measurement: "Measurement") -> list[tuple[str, ...]]:

@@ -8,20 +8,22 @@ from itertools import pairwise, permutations
 import numpy as np
 
 from wedgesweep.measured.declarations import MOTIONS, QUANTITIES
+from wedgesweep.measured.signals import stand_ins
 from wedgesweep.readers.survey import Column
-from wedgesweep.readers.table import DATETIME
-from wedgesweep.units import DAY, FOREIGN, UNITS, angular, is_unit, usual
+from wedgesweep.readers.table import DATETIME, OF_A_MATRIX
+from wedgesweep.units import DATES, DAY, FOREIGN, UNITS, angular, is_unit, usual
 
 FORCE, INPUT, TIME = "force", "input", "time"
 # Parts of names, and whole names, of each quantity; the first quantity with a match has the column.
 STEMS = {
-    TIME: r"time|\bdate|zeit|temps\b|tempo\b|stamp|seconds|clock",
-    "acceleration": r"acc|beschl|ddot|\bimu",
-    "velocity": r"(?<!tra)vel|speed|geschw|vitesse|rpm|omega|tacho|qdot|xdot|gyro",
+    TIME: r"time|\bdate|zeit|temps\b|tempo\b|tiempo|stamp|seconds|clock|时间|時間",
+    "acceleration": r"acc|acel|beschl|ddot|\bimu|加速度",
+    "velocity": r"(?<!tra)vel|speed|geschw|vitesse|rpm|omega|tacho|qdot|xdot|gyro|drehzahl|速度|转速|回転",
     FORCE: r"force|friction|reibung|torque|trq|kraft|moment|thrust|effort|load|traction|\btau"
-    r"|forza|fuerza|copp?ia\b|couple\b",
+    r"|forza|fuerza|copp?ia\b|couple\b|力|载荷|荷重|扭矩|トルク",
     "displacement": r"disp|pos|ang[lu]|weg\b|winkel|laser|lvdt|stroke|encod|deflect|travel|rotation|extens"
-    r"|distance|hub\b|theta|plate|mass|auslenk|verschieb|cors[ae]\b|course|d[ée]plac|desplaz|string.?pot",
+    r"|distance|hub\b|theta|plate|mass|auslenk|verschieb|cors[ae]\b|course|d[ée]plac|desplaz|string.?pot"
+    r"|位移|变位|変位|角度",
 }
 SYMBOLS = {
     TIME: r"t|ts|sec|s\.?e\.?c|s",
@@ -38,11 +40,11 @@ DRIVES = rf"input|excit|shaker|driv(er|ing)|exciter|source|anreg|{PLACES}"
 COUNTS = r"n|nr\.?|no\.?|#|index|samples?|points?|count(er)?|row|scan|sequence"
 NOT_MEASURED = (
     r"ref|supply|ambient|desired|target|set.?p|command|cmd|soll|_des|error|not selected|status|trigger|limit"
-    r"|coeff|\bcof\b"
+    r"|coeff|\bcof\b|temp(?![os]\b)|温度"
 )
 # Names of the load that presses two faces together, and the std over the mean below which it is set, not
 # a response: control of a tribometer's load holds it to a few per cent.
-PRESSES, SET = r"load|normal|clamp|\bf_?[nz]\b|last\b|kraft_?n\b", 0.3
+PRESSES, SET = r"load|normal|clamp|\bf_?[nz]\b|last\b|kraft_?n\b|载荷|法向|正压", 0.3
 # A motor's current may stand for its torque, a pressure for the force of its piston.
 STANDS_FOR_FORCE = r"curr|\bamp|strom|pwm|duty|press|druck|volt"
 STANDING_UNITS = ("A", "mA", "bar", "mbar", "psi", "kPa", "MPa")
@@ -60,6 +62,8 @@ COMPUTED = 0.02
 EVEN, UNEVEN = 0.9, 0.75
 # Lines of a cross-spectrum that count, over its highest one: below is noise, and drift of sensors.
 LINES = 1e-3
+# Power of the frequency by which a cross-spectrum of two rates is one of powers.
+RATES = {"velocity": 1.0, "acceleration": -1.0}
 # Points at which columns are compared.
 POINTS = 3000
 # Numbers beyond it are damage: their differences and squares may be no numbers.
@@ -104,7 +108,10 @@ class Run:
 
 def unit_of(column: Column, quantities: Sequence[str]) -> str:
     """The unit that a file names, of one of the quantities or else foreign; empty if there is none."""
-    written = [column.channel.unit, *BRACKETS.findall(column.label), *re.split(r"[_\s,:]+", column.label)[1:]]
+    label = OF_A_MATRIX.sub(r"\1", column.label)
+    rates = [pair for pair in map("/".join, pairwise(label.split("_"))) if is_unit(usual(pair))]
+    within = rates or re.split(r"[_\s,:]+", label)[1:]  # velocity_in_s is no length
+    written = [column.channel.unit, *BRACKETS.findall(label), *within]
     known = [usual(each.strip()) for each in written if each.strip()]
     if re.search(STEMS[FORCE], column.label.lower()):  # no torque is a length, however its unit is written
         known = ["N m" if each == "nm" else each for each in known]
@@ -151,7 +158,19 @@ def _side_by_side(columns: Sequence[Column]) -> list[list[Column]]:
     marked = all(RUN.search(part[-1].label) for part in parts)
     if len(patterns) == 1 and len(parts[0]) > 1 and (marked or not same):
         return parts
-    return [[column for i, column in enumerate(columns) if i not in starts[1:]]]
+    own = [each for part in parts[1:] for each in _on_own_clock(part, columns[starts[0]])]
+    return [[*parts[0], *own]]
+
+
+def _on_own_clock(part: Sequence[Column], first: Column) -> list[Column]:
+    """Columns behind a further time, which has other numbers of samples if it is another clock."""
+    time, *channels = part
+    stamps, others, unit = _numbers(time), _numbers(first), _clock(time).unit
+    step = UNITS[TIME][unit] * float(np.median(np.diff(stamps)))
+    if stamps.size == others.size or not step > 0.0:
+        return channels
+    start = UNITS[TIME][unit] * (stamps[0] - (others[0] if unit in DATES else 0.0))
+    return [replace(each, rate=float(f"{1.0 / step:.6g}"), start=float(start)) for each in channels]
 
 
 def _numbered_runs(columns: Sequence[Column]) -> list[list[Column]]:
@@ -204,6 +223,17 @@ def _is_abscissa(column: Column) -> bool:
     return not (named or whole or unit_of(column, [TIME, *QUANTITIES])) and _goes_evenly(column)
 
 
+def known_samples(columns: Sequence[Column]) -> list[Column]:
+    """Columns without numbers that stand for missing samples."""
+    found = []
+    for column in columns:
+        values, texts = column.channel.values, tuple(stand_ins(column.channel.values))
+        known = np.where(np.isin(values, [float(text) for text in texts]), np.nan, values)
+        without = replace(column, channel=replace(column.channel, values=known), missing=texts)
+        found.append(without if texts else column)
+    return found
+
+
 def choose(columns: Sequence[Column]) -> Run:
     """The channels among the columns of a run."""
     time = next(iter(_times(columns)), None) or next(filter(_is_abscissa, columns), None)
@@ -222,12 +252,16 @@ def choose(columns: Sequence[Column]) -> Run:
         signals = [_thinned(channels[name], stamps) for name in ("displacement", FORCE)]
         if _share(*signals) < STANDS:
             del channels[FORCE]
-    if set(channels) == {"acceleration"}:
-        channels = _of_base_and_mass(channels["acceleration"], rest)
+    if _turns(channels):  # on what turns an accelerometer shows gravity
+        units = {name: each.unit for name, each in with_units(channels).items()}
+        channels = {name: channels[name] for name in channels if name not in MOTIONS or angular(units[name])}
+    for quantity in RATES:
+        if set(channels) == {quantity}:
+            channels = _of_base_and_mass(quantity, channels[quantity], rest)
     chosen = with_units(channels)
     if "velocity" in chosen and "displacement" in chosen:
         chosen["velocity"] = _derived(chosen, time)
-    used = (time, load, *channels.values())
+    used = (time, load, *(each.column for each in chosen.values()))
     left = tuple(column for column in columns if all(column is not each for each in used))
     return Run(None if time is None else _clock(time), chosen, left, load)
 
@@ -237,20 +271,21 @@ def is_relative(column: Column) -> bool:
     return re.search(r"(?<![a-z])rel(?![a-z])|relativ|drift", column.label.lower()) is not None
 
 
-def _of_base_and_mass(found: Column, columns: Sequence[Column]) -> dict[str, Column]:
-    """Channels of two accelerometers: the input is that of the base, from which power flows to the mass.
+def _of_base_and_mass(quantity: str, found: Column, columns: Sequence[Column]) -> dict[str, Column]:
+    """Channels of two sensors of a velocity or of an acceleration: the input is that of the base.
 
-    The base moves the mass by its force, which is in proportion to the mass's acceleration.
+    From it power flows to the mass: the base moves that by its force, which is in proportion to the mass's
+    acceleration.
     """
-    alike = [c for c in columns if _points(c, "acceleration") >= _points(found, "acceleration")]
+    alike = [c for c in columns if _points(c, quantity) >= _points(found, quantity)]
     if len(alike) != 2 or alike[0].channel.values.size != alike[1].channel.values.size:
-        return {"acceleration": found}
+        return {quantity: found}
     first, second = (np.fft.rfft(_centred(c) * np.hanning(c.channel.values.size)) for c in alike)
     lines = (first.conj() * second)[1:]
     lines[np.abs(lines) < LINES * np.abs(lines).max()] = 0.0
-    to_first = float(np.sum(lines.imag / np.arange(1, lines.size + 1)))
+    to_first = float(np.sum(lines.imag * np.arange(1, lines.size + 1.0) ** RATES[quantity]))
     base, mass = alike[::-1] if to_first > 0.0 else alike
-    return {"acceleration": mass, INPUT: base}
+    return {quantity: mass, INPUT: base}
 
 
 def _centred(column: Column) -> np.ndarray:
@@ -480,6 +515,9 @@ def _with_unit(name: str, column: Column, turns: bool) -> Chosen:
     """A channel and its unit; what is no unit of it, or is not known, is asked."""
     quantity = _quantity(column) or FORCE if name == INPUT else name
     keys: dict[str, object] = {"quantity": quantity} if name == INPUT else {}
+    keys |= {"missing": list(column.missing)} if column.missing else {}
+    keys |= {"rate_hz": column.rate} if column.rate else {}
+    keys |= {"delay_ms": float(f"{-1e3 * column.start:.6g}")} if column.start else {}
     unit = unit_of(column, [quantity])
     if unit in UNITS[quantity]:
         return Chosen(column, unit, keys)

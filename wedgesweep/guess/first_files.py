@@ -13,8 +13,8 @@ from wedgesweep.errors import InputError
 from wedgesweep.files import write_text
 from wedgesweep.guess import document
 from wedgesweep.guess.columns import INPUT, is_relative
-from wedgesweep.guess.model import Numbers, against_input, numbers
-from wedgesweep.guess.tests import Guessed, tests_of
+from wedgesweep.guess.model import Numbers, against_input, negated, numbers
+from wedgesweep.guess.tests import Guessed, imposed, tests_of
 from wedgesweep.measured import Measurement, consistency
 from wedgesweep.measured.declarations import LOOP
 from wedgesweep.readers import ReadError
@@ -22,8 +22,8 @@ from wedgesweep.readers.survey import survey
 from wedgesweep.units import angular
 
 MODEL = "model.toml"
-# Times that a file is written: as it is, with the signs of channels, and with the numbers at these signs.
-MOST_LOOKS = 3
+# Times that a file is written: as it is, as loops, with the signs of channels, and with the numbers of these.
+MOST_LOOKS = 4
 UNKNOWN = Numbers(1.0, 1e3, 0.0, unseen=("mass", "damping"))
 
 
@@ -56,6 +56,8 @@ def write(path: Path, files: Sequence[Path]) -> list[Path]:
         before = tests, found, relative
         relative = against_input(measurement) | named
         tests, found = _with_signs(tests, measurement), numbers(measurement)
+        if "mass" in found.unseen:
+            tests = [imposed(test) for test in tests]
         if (tests, found, relative) == before:
             break
     return [path, model]
@@ -83,8 +85,8 @@ def _read(data: Path) -> Measurement:
 
 
 def _with_signs(tests: Sequence[Guessed], measurement: Measurement) -> list[Guessed]:
-    """Tests whose force has the sign at which it takes energy out of the motion."""
-    turned = {test.name for test in consistency.negated(measurement)}
+    """Tests whose force has the sign at which a passive system explains it."""
+    turned = {test.name for test in [*consistency.negated(measurement), *negated(measurement)]}
     return [
         replace(test, negated="force" if test.kind == LOOP else INPUT) if record.name in turned else test
         for test, record in zip(tests, measurement.tests, strict=True)

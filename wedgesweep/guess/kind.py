@@ -86,13 +86,13 @@ def parts_of(time: np.ndarray) -> list[Part]:
         return [WHOLE]
     first = float(stamps[0])
     return [
-        Part(_down(stamps[a], step) if a else None, None if b == stamps.size else _down(stamps[b - 1], -step))
+        Part(down(stamps[a], step) if a else None, None if b == stamps.size else down(stamps[b - 1], -step))
         for a, b in runs
         if first <= stamps[a]
     ]
 
 
-def _down(time: float, step: float) -> float:
+def down(time: float, step: float) -> float:
     """A time less half a step, in few decimals."""
     return float(np.round(time - 0.5 * step, max(0, 1 - int(np.floor(np.log10(abs(step)))))))
 
@@ -106,9 +106,9 @@ def from_release(signal: np.ndarray, time: np.ndarray) -> float | None:
     left = first + int((~high[first:]).argmax())
     to_rest = int((place[left:] * place[first] <= 0.0).argmax())
     if left - first > to_rest > 0:  # a swing is as long at its top as from there to the rest position
-        return _down(float(time[left - 1]), float(time[1] - time[0]))
+        return down(float(time[left - 1]), float(time[1] - time[0]))
     pushed = largest > 2 and not high[0] and largest < BEGINNING * signal.size
-    return _down(float(time[largest]), float(time[1] - time[0])) if pushed else None
+    return down(float(time[largest]), float(time[1] - time[0])) if pushed else None
 
 
 def from_steady(signal: np.ndarray, time: np.ndarray) -> float | None:
@@ -121,4 +121,4 @@ def from_steady(signal: np.ndarray, time: np.ndarray) -> float | None:
         return None
     period = cycles.times[1] - cycles.times[0]
     start = cycles.middle + cycles.times[run_up[-1]] + 0.5 * period
-    return _down(float(start), float(time[1] - time[0]))
+    return down(float(start), float(time[1] - time[0]))

@@ -11,7 +11,7 @@ from scipy.optimize import nnls
 from wedgesweep.diagnose.noise_spectrum import white_noise
 from wedgesweep.diagnose.smoothing import LOWEST, LowPass, derivative
 from wedgesweep.measured import Measurement, TestRecord, contact_load
-from wedgesweep.measured.declarations import MOTIONS, RELATIVE
+from wedgesweep.measured.declarations import MOTIONS, RELATIVE, TRANSIENT
 from wedgesweep.measured.kinds import HIGHEST
 
 # Cut-offs over the frequency of the motion, noise of the acceleration over itself that is small enough, and
@@ -157,6 +157,16 @@ def _under_force(tests: Sequence[TestRecord], restoring: Restoring) -> tuple[flo
     clearer = [each for each in others if each[0] < CLEARLY * all_of_it[0]]
     left, found = min(clearer, key=lambda each: each[1].damping, default=all_of_it)
     return left, replace(found, load=loads[0] if loaded else 0.0)
+
+
+def negated(measurement: Measurement) -> list[TestRecord]:
+    """Transients, if mass, spring and damper explain them clearly better under a force of the other sign."""
+    tests = [test for test in measurement.tests if test.kind == TRANSIENT and test.input is not None]
+    if not tests or measurement.recorded_input != "force":
+        return []
+    turned = [replace(test, input=-test.input) for test in tests if test.input is not None]
+    left, otherwise = (_under_force(each[:TESTS], _spring)[0] for each in (tests, turned))
+    return tests if otherwise < CLEARLY * left else []
 
 
 def _undamped(test: _Moving) -> _Moving:

@@ -3,14 +3,26 @@
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 
-from wedgesweep.guess.columns import FORCE, HUGE, INPUT, Chosen, Run, choose, runs_of, with_units
-from wedgesweep.guess.kind import WHOLE, Part, from_release, from_steady, kind_of, parts_of
+from wedgesweep.guess.columns import (
+    FORCE,
+    HUGE,
+    INPUT,
+    Chosen,
+    Run,
+    choose,
+    known_samples,
+    runs_of,
+    with_units,
+)
+from wedgesweep.guess.kind import WHOLE, Part, down, from_release, from_steady, kind_of, parts_of
 from wedgesweep.measured.clock import continued
 from wedgesweep.measured.declarations import LOOP, MOTIONS, STEADY, TRANSIENT
+from wedgesweep.measured.kinds import released_again
 from wedgesweep.readers.survey import Column, Survey
 from wedgesweep.units import UNITS
 
@@ -39,7 +51,7 @@ class Guessed:
 
 def tests_of(surveys: Sequence[Survey]) -> list[Guessed]:
     """The tests that files hold, in their order."""
-    parts = [(survey, columns) for survey in surveys for columns in runs_of(survey.columns)]
+    parts = [(survey, columns) for survey in surveys for columns in runs_of(known_samples(survey.columns))]
     first = choose(parts[0][1])
     found = [
         Guessed(survey.path, _like(first, parts[0][1], columns), rate=_rate(survey))
@@ -124,7 +136,32 @@ def _with_kind(test: Guessed) -> list[Guessed]:
         channels.pop(FORCE, None)
     channels = _compared(channels)
     test = replace(test, run=_without(test.run, channels), kind=kind, reason=reason)
+    if kind == TRANSIENT and INPUT not in channels:
+        parts = [(each, *_evenly(test, each)) for part in parts for each in _releases(*part)]
     return [replace(test, part=_begun(*each, kind)) for each in parts]
+
+
+def imposed(test: Guessed) -> Guessed:
+    """A steady test of a velocity under a force as a loop: of that force under that velocity."""
+    channels = test.run.channels
+    if (
+        test.kind != STEADY
+        or set(channels) != {"velocity", INPUT}
+        or channels[INPUT].keys["quantity"] != FORCE
+    ):
+        return test
+    keys = {key: value for key, value in channels[INPUT].keys.items() if key != "quantity"}
+    as_loop = {"velocity": channels["velocity"], FORCE: replace(channels[INPUT], keys=keys)}
+    negated = FORCE if test.negated else ""
+    reason = "a force under a velocity, and no inertia shows"
+    return replace(test, run=replace(test.run, channels=as_loop), kind=LOOP, reason=reason, negated=negated)
+
+
+def _releases(part: Part, time: np.ndarray, signals: Mapping[str, np.ndarray]) -> list[Part]:
+    """Parts of a free motion, each of which begins anew."""
+    step = float(time[1] - time[0])
+    starts = [down(float(time[each]), step) for each in released_again(next(iter(signals.values())))]
+    return [Part(*ends) for ends in pairwise([part.start, *starts, part.end])]
 
 
 def _begun(part: Part, time: np.ndarray, signals: Mapping[str, np.ndarray], kind: str) -> Part:
@@ -180,7 +217,9 @@ def _evenly(test: Guessed, part: Part) -> tuple[np.ndarray, dict[str, np.ndarray
     for name, values in own.items():
         if values.size != stamps.size:
             continue
-        x, y = stamps[good][order], values[good][order]
+        column = channels[name].column
+        x = stamps if not column.rate else column.start + np.arange(stamps.size) / column.rate
+        x, y = x[good][order], values[good][order]
         known = np.abs(y) < HUGE
         signals[name] = np.interp(time, x[known], y[known])
     return time, {**dict.fromkeys(channels, np.zeros(time.size)), **signals}

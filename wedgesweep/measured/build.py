@@ -20,7 +20,7 @@ from wedgesweep.measured.declarations import (
 )
 from wedgesweep.measured.even import ClockError, evened
 from wedgesweep.measured.frequency import FEWEST_CYCLES, estimate_frequency
-from wedgesweep.measured.kinds import loop_faults, transient_faults
+from wedgesweep.measured.kinds import goes_one_way, loop_faults, periods, transient_faults
 from wedgesweep.measured.measurement import TestRecord
 from wedgesweep.measured.plausibility import channel_faults
 from wedgesweep.measured.quality import trend_faults
@@ -36,8 +36,8 @@ CONSTANT = ("time", KNOWN_FORCE, NORMAL_FORCE)
 # Samples per period that must remain, so that all harmonics that are compared pass the filter unchanged.
 FEWEST_PER_PERIOD = 200
 # A free motion of more samples keeps so many per period: eight harmonics of it are compared, and jumps of
-# friction still show. What has fewer periods than SLOWEST in a record is drift.
-MOST_OF_FREE, PER_PERIOD, SLOWEST = 20_000, 100, 3
+# friction still show.
+MOST_OF_FREE, PER_PERIOD = 20_000, 100
 # Half length of the filter in samples that remain, edge of its pass band over the new Nyquist frequency, and
 # beta of its Kaiser window: stop band and ripple of -118 dB (Oppenheim and Schafer, Discrete-Time Signal
 # Processing, sec. 7.5).
@@ -71,6 +71,8 @@ def build_record(
     if given.get("detrend", False):
         columns = {each: _straightened(time, samples, frequency) for each, samples in columns.items()}
     columns, time, thinned = _limited(given, columns, time, frequency)
+    if given["kind"] == LOOP and "displacement" not in columns:
+        columns["displacement"] = _integrated(time, columns["velocity"])
     if (known := columns.pop(KNOWN_FORCE, None)) is not None:
         # Only the sum with the force that is measured, or drives the mass, acts.
         beside = "force" if given["kind"] == LOOP else INPUT
@@ -152,6 +154,14 @@ def _straightened(time: np.ndarray, samples: np.ndarray, frequency: float) -> np
     return samples - slope_of_means(time, samples, frequency) * (time - time.mean())
 
 
+def _integrated(time: np.ndarray, velocity: np.ndarray) -> np.ndarray:
+    """Displacement (n,) by a velocity (n,), which has a zero of its own where the motion comes back."""
+    from scipy.integrate import cumulative_trapezoid
+
+    place = cumulative_trapezoid(velocity, time, initial=0.0)
+    return place if goes_one_way(place) else _straightened(time, place, estimate_frequency(time, velocity))
+
+
 def _limited(
     given: Mapping[str, Any], columns: dict[str, np.ndarray], time: np.ndarray, frequency: float
 ) -> tuple[dict[str, np.ndarray], np.ndarray, str]:
@@ -160,16 +170,9 @@ def _limited(
     if kind == STEADY and time.size > MOST_SAMPLES:
         return shortened(columns, time, frequency, MOST_SAMPLES)
     if kind == TRANSIENT and INPUT not in columns and time.size > MOST_OF_FREE:
-        periods = max(map(_periods, columns.values()))
-        factor = int(time.size / (PER_PERIOD * periods))
+        factor = int(time.size / (PER_PERIOD * max(map(periods, columns.values()))))
         return _thinned(columns, time, factor) if factor > 1 else (columns, time, "")
     return columns, time, ""
-
-
-def _periods(samples: np.ndarray) -> int:
-    """Periods in samples (n,) of the frequency that has most of their power."""
-    power = np.abs(np.fft.rfft(samples - samples.mean()))
-    return SLOWEST + int(power[SLOWEST:].argmax())
 
 
 def shortened(

@@ -37,7 +37,7 @@ MIXED = "mixed"
 CHANNELS = {
     STEADY: ("time", *MOTIONS, INPUT, KNOWN_FORCE, NORMAL_FORCE),
     TRANSIENT: ("time", *MOTIONS, INPUT, KNOWN_FORCE),
-    LOOP: ("time", "displacement", "force", KNOWN_FORCE),
+    LOOP: ("time", "displacement", "velocity", "force", KNOWN_FORCE),
 }
 
 FREQUENCY = Quantity("frequency_hz", nan, "input frequency; estimated if absent", above=0.0)
@@ -171,7 +171,9 @@ def columns_of(columns: Mapping[str, Any], kind: str, alone: bool) -> dict[str, 
     """The declared channels that the files of tests of a kind have; all of them if no other kind is there."""
     if alone:
         return dict(columns)
-    used = CHANNELS[kind]
+    used = [
+        name for name in CHANNELS[kind] if (kind, name) != (LOOP, "velocity") or "displacement" not in columns
+    ]
     return {name: each for name, each in columns.items() if name in used}
 
 

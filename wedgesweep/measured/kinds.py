@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from wedgesweep.hints import show
-from wedgesweep.measured.declarations import CHANNELS, LOOP, MOTIONS, STEADY, TRANSIENT
+from wedgesweep.measured.declarations import LOOP, MOTIONS, STEADY, TRANSIENT, columns_of
 from wedgesweep.measured.measurement import TestRecord
 
 # A motion that comes back by less than this share of its range goes one way.
@@ -15,6 +15,11 @@ RETURNS = 0.1
 DECAYS, PART = 1.2, 0.25
 # The same where the swing falls from each of PARTS parts to the next: noise and steady motions never do so.
 DECAYS_SLOWLY, PARTS = 1.02, 8
+# Swing of a period over that of two periods before, and over the largest one, from which a free motion was
+# let go or struck again.
+GROWS, LARGE = 2.0, 0.3
+# What has fewer periods in a record is drift.
+SLOWEST = 3
 # Highest cut-off over the sampling rate: the motion of a loop is filtered at twice that.
 HIGHEST = 0.2
 # Fewest samples over which a filter settles.
@@ -25,10 +30,10 @@ OF_A_TRANSIENT, NOT_OF_A_SINE = ("undriven",), ("repeat_of",)
 # Sizes in SI, and names, of the units in which they are shown.
 DISPLAY_UNITS = {"displacement": (1e-3, "mm"), "velocity": (1e-3, "mm/s"), "acceleration": (1.0, "m/s^2")}
 # What a test must have, by kind.
-NEEDED = {"transient": (), "loop": ("displacement", "force")}
+NEEDED = {"transient": (), "loop": ("force",)}
 MEANING = {
     "transient": "a transient is a motion from some start, free or under a recorded input",
-    "loop": "a loop is the force under a recorded displacement",
+    "loop": "a loop is the force under a recorded displacement, or else under a velocity",
 }
 
 
@@ -39,7 +44,10 @@ def column_faults(columns: Mapping[str, Any], kind: str) -> list[str]:
         missing = [f"displacement: missing, and so are velocity and acceleration; {MEANING[kind]}"]
     if kind == TRANSIENT and "displacement" not in columns and columns.get("velocity", {}).get("derived"):
         missing.append("velocity.derived: there is no displacement that it was computed from; give that one")
-    extra = [f"{name}: not used; {MEANING[kind]}, omit it" for name in columns if name not in CHANNELS[kind]]
+    if kind == LOOP and not {"displacement", "velocity"} & {*columns}:
+        missing.insert(0, f"displacement: missing; {MEANING[kind]}")
+    used = columns_of(columns, kind, alone=False)
+    extra = [f"{name}: not used; {MEANING[kind]}, omit it" for name in columns if name not in used]
     return missing + extra
 
 
@@ -97,6 +105,10 @@ def transient_faults(test: TestRecord, file: str, at: str) -> list[str]:
         return [f"{file}: has {test.time.size} samples; at least {FEWEST} make a transient"]
     if test.input is not None:
         return []
+    if again := released_again(signal):
+        when = ", ".join(f"{test.time[each]:.4g} s" for each in again)
+        mend = "end the test before (to_s), and make another one of what follows (from_s)"
+        return [f"{file}: the motion grows again at {when}, as if it was struck or let go once more; {mend}"]
     size = int(PART * signal.size)
     first, last = float(np.ptp(signal[:size])), float(np.ptp(signal[-size:]))
     if first < DECAYS * last and not _decays_slowly(signal):
@@ -106,6 +118,22 @@ def transient_faults(test: TestRecord, file: str, at: str) -> list[str]:
         better = f'add the column input if there is one; if it is steady write kind = "steady" ({at}.kind)'
         return [f"{file}: {fault}; {better}"]
     return []
+
+
+def released_again(signal: np.ndarray) -> list[int]:
+    """Samples at which a free motion (n,), after it has decayed, begins anew."""
+    period = signal.size // periods(signal)
+    swing = np.ptp(signal[: signal.size - signal.size % period].reshape(-1, period), axis=1)
+    before, after = swing[:-2], swing[2:]
+    grown = (after > GROWS * before) & (after > LARGE * swing.max())
+    grown &= np.maximum.accumulate(before) > GROWS * before
+    return [period * (each + 1) for each in np.flatnonzero(grown & ~np.r_[False, grown[:-1]]).tolist()]
+
+
+def periods(signal: np.ndarray) -> int:
+    """Periods in samples (n,) of the frequency that has most of their power."""
+    power = np.abs(np.fft.rfft(signal - signal.mean()))
+    return SLOWEST + int(power[SLOWEST:].argmax())
 
 
 def _decays_slowly(signal: np.ndarray) -> bool:

@@ -144,7 +144,8 @@ class Measurement:
 
     def motion_of(self, channel: str) -> str:
         """The motion that a channel shows: RELATIVE to the base, or ABSOLUTE."""
-        return self.columns[channel].get("of", RELATIVE)
+        column = self.columns.get(channel) or self.columns["velocity"]  # of which it is the integral
+        return column.get("of", RELATIVE)
 
     def factors_of(self, channel: str) -> tuple[float, float]:
         """Factors of a channel and of the input's displacement in the motion that is simulated.

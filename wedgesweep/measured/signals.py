@@ -23,6 +23,9 @@ LISTED = 3
 EXCEL, FASTEST = (2e4, 8e4), 2e-6
 # Distance from the median, over that of all other samples, of a number that may stand for a missing one.
 FAR = 10.0
+# A sensor that hangs repeats a number STUCK times or more, and then jumps by JUMP times its median step.
+# Where more than this share of the samples hang, or of other steps are none, it is coarse or rests.
+STUCK, JUMP, RARE = 10, 10.0, 0.05
 CLOCK = "write the column time in [measurement.columns], or rate_hz in [measurement]"
 
 
@@ -114,7 +117,9 @@ def _signals_of(
         stamps = _stamps(columns["time"], read["time"], remarks) if timed else None
         for name, channel in channels.items():
             rate = channel.get("rate_hz") or (None if timed else measurement.get("rate_hz"))
-            signals[name] = _signal(name, channel, columns[name], (stamps, rate), table)
+            signals[name] = _without_stuck(
+                name, _signal(name, channel, columns[name], (stamps, rate), table), remarks
+            )
     except ValueError as error:
         found.append(str(error))
     faults.extend(f"{file}: {fault}" for fault in found)
@@ -148,6 +153,35 @@ def _signal(
     return Signal(stamps.time - late, size * values, stamps.resolution, table.where, faults, stamps.dated)
 
 
+def _without_stuck(name: str, signal: Signal, remarks: list[str]) -> Signal:
+    """A signal without samples of a sensor that hung: they are missing."""
+    stuck = stuck_samples(signal.samples)
+    if not stuck.any():
+        return signal
+    count, first = int(np.count_nonzero(stuck)), float(signal.time[int(stuck.argmax())])
+    remarks.append(f"{name} hangs for {count} samples, the first after {first:.6g} s: they count as missing")
+    return replace(signal, samples=np.where(stuck, np.nan, signal.samples))
+
+
+def stuck_samples(samples: np.ndarray) -> np.ndarray:
+    """Which of samples (n,) a sensor repeated before it jumped; not those at its extremes."""
+    known, found = np.flatnonzero(np.isfinite(samples)), np.zeros(samples.size, bool)
+    if known.size < 2:
+        return found
+    values = samples[known]
+    steps = np.abs(np.diff(values))
+    starts, ends = (
+        np.flatnonzero(np.diff(np.r_[0, (steps == 0.0).astype(int), 0]) == sign) for sign in (1, -1)
+    )
+    long, typical = ends - starts >= STUCK, float(np.median(steps))
+    for start, end in zip(starts[long], ends[long], strict=True):
+        inside = start > 0 and end < steps.size and values.min() < values[start] < values.max()
+        found[known[start + 1 : end + 1]] = inside and steps[end] > JUMP * typical
+    shorter = int((ends - starts)[~long].sum())
+    coarse = max(shorter, int(np.count_nonzero(found))) > RARE * values.size
+    return np.zeros(samples.size, bool) if coarse else found
+
+
 class _Stamps(NamedTuple):
     """Stamps (n,) in s, their rounding (n,) in s, faults by sample, and whether they count from a date."""
 
@@ -165,7 +199,7 @@ def _stamps(column: Channel, time: Mapping[str, Any], remarks: list[str]) -> _St
         remarks.append("" if unit == DATETIME else "time stamps are dates")
         return _Stamps(values, np.full(values.size, 1e-6), column.faults, dated=True)
     if unit == DATETIME:
-        fault = 'time: unit = "datetime", but its cells are no ISO 8601 dates; write another unit'
+        fault = 'time: unit = "datetime", but its cells are no dates; write another unit'
         raise ValueError(fault)
     size, rounding = UNITS["time"][unit], np.zeros(values.size)
     finite = values[np.isfinite(values)]
@@ -196,15 +230,22 @@ def _missing(values: np.ndarray, channel: Mapping[str, Any]) -> np.ndarray:
 
 
 def _refuse_stand_ins(name: str, values: np.ndarray) -> None:
-    """Raise ValueError for a number far from all others, as some loggers write it for a missing sample."""
-    numbers = values[np.isfinite(values)]
+    """Raise ValueError for a number that may stand for a missing sample."""
+    for number, count in stand_ins(values).items():
+        fault = f"{name}: {number} occurs {count} times, far from all other samples"
+        mend = f'if it stands for a missing sample, write missing = ["{number}"]'
+        raise ValueError(f"{fault}; {mend}")
+
+
+def stand_ins(values: np.ndarray) -> dict[str, int]:
+    """How often numbers far from all others occur, as some loggers write for a missing sample."""
+    numbers, found = values[np.isfinite(values)], {}
     for number in (numbers.min(), numbers.max()) if numbers.size else ():
         others = numbers[numbers != number]
         count, middle = numbers.size - others.size, float(np.median(others)) if others.size else 0.0
         if count > 1 and others.size > count and abs(number - middle) > FAR * np.abs(others - middle).max():
-            fault = f"{name}: {number:.12g} occurs {count} times, far from all other samples"
-            mend = f'if it stands for a missing sample, write missing = ["{number:.12g}"]'
-            raise ValueError(f"{fault}; {mend}")
+            found[f"{number:.12g}"] = count
+    return found
 
 
 def _unit_faults(name: str, column: Channel, channel: Mapping[str, Any], remarks: list[str]) -> list[str]:

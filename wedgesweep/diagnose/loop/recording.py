@@ -18,7 +18,7 @@ from wedgesweep.diagnose.loop.force_noise import of_force
 from wedgesweep.diagnose.loop.motion_noise import Derivatives
 from wedgesweep.diagnose.noise_spectrum import FROM_REPEATS, NoiseSpectrum, of_noise, white_noise
 from wedgesweep.diagnose.sampled_data import MOST_BLOCKS, Decorrelation, decorrelation
-from wedgesweep.diagnose.smoothing import LowPass, Motion, chosen_cutoff, continuous, motion
+from wedgesweep.diagnose.smoothing import LowPass, Motion, chosen_cutoff, continuous, motion, noise_of_motion
 from wedgesweep.effects import channel_delay, force_gain, merge
 from wedgesweep.errors import InputError
 from wedgesweep.measured import TestRecord
@@ -226,6 +226,9 @@ def recording(test: TestRecord, model: Config, law: str, differences: Sequence[n
     low_pass = LowPass(
         test.cutoff or chosen_cutoff(displacement, noise, float(force.std()), mass, rate), rate
     )
+    if test.velocity is not None:  # it was integrated: what white noise of a place makes of the velocity
+        of_velocity, _, _ = noise_of_motion(white_noise(test.velocity), low_pass)
+        noise = of_velocity / noise_of_motion(1.0, low_pass)[1]
     ends = low_pass.settling
     places = np.arange(ends, displacement.size - ends, low_pass.stride)
     if not places.size:

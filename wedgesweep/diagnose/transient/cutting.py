@@ -16,7 +16,8 @@ from wedgesweep.errors import InputError
 # Natural periods of a window, and of what is simulated before it so that the start of bristles is forgotten;
 # the latter under an input, which keeps lifting wedges off: they forget their start later.
 WINDOW, LEAD, DRIVEN_LEAD = 10.0, 1.0, 1.5
-# Share of a record under an input that is simulated before its first window, at most.
+# Share of a record under an input, at most, that is simulated before its first window; or in which the filter
+# of the input settles, at either end.
 LEAD_SHARE = 0.125
 # A single record is cut into at least FEWEST windows, if each has SHORTEST natural periods. Friction ends
 # many free motions after six to nine.
@@ -103,7 +104,8 @@ def windows(record: Recorded, model: Config, law: str, fewest: int = 1) -> list[
     rest, length = _extent(displacement)
     smooth = LowPass(min(top / (2.0 * pi), HIGHEST), 1.0)(displacement) - rest
     slope = np.gradient(smooth) * rate
-    parts = cuts(record.channels.shape[1], period, given.settling if given else 0, fewest)
+    samples = record.channels.shape[1]
+    parts = cuts(samples, period, min(given.settling, int(LEAD_SHARE * samples)) if given else 0, fewest)
     input_noise = given.input_noise(record.shares) if given else None
     found = []
     for place, (first, inside, lead) in enumerate(parts, 1):
