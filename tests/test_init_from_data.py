@@ -16,7 +16,7 @@ from wedgesweep import measured
 from wedgesweep.diagnose.loop.loop_data import loop_data
 from wedgesweep.diagnose.transient.from_measurement import transient_data
 from wedgesweep.guess import first_files
-from wedgesweep.measured import consistency
+from wedgesweep.measured import consistency, quality
 
 REAL = Path(__file__).parents[2] / "shared" / "real"
 RATE = 1000.0
@@ -760,3 +760,16 @@ def test_a_force_under_a_velocity_alone_is_a_loop(tmp_path):
     assert found.model.oscillator["damping"] == pytest.approx(600.0, rel=0.05)
     (recorded,) = loop_data(found).recordings
     assert 0.05e-3 < recorded.motion.noise[1] < 0.2e-3
+
+
+def test_a_force_that_drifts_and_a_wrong_unit_of_time_are_told(tmp_path):
+    t, d, f = loop()
+    found = begun(tmp_path, text(tmp_path / "one.csv", t, d, f, header="t (s),d (mm),F (N)"))
+    assert quality.warnings(found.tests[0]) == []
+    found = begun(tmp_path, text(tmp_path / "one.csv", t, d, f + 4.0 * t, header="t (s),d (mm),F (N)"))
+    assert [each[:22] for each in quality.warnings(found.tests[0])] == ["force: its mean drifts"]
+    found = begun(tmp_path, text(tmp_path / "one.csv", t, d, f, header="t (ms),d (mm),F (N)"))
+    (warning,) = quality.warnings(found.tests[0])
+    assert re.search(
+        r"displacement: its acceleration is about .*at 1\.\d+e\+03 Hz; is its unit right", warning
+    )

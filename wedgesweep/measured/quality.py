@@ -4,9 +4,9 @@ import numpy as np
 from scipy.special import stdtrit
 
 from wedgesweep.measured.cycles import Cycles, NoiseEstimate, cut, estimate_noise
-from wedgesweep.measured.declarations import LOOP, STEADY
-from wedgesweep.measured.frequency import IMPROBABLE, stands_out
-from wedgesweep.measured.kinds import goes_one_way
+from wedgesweep.measured.declarations import LOOP, MOTIONS, STEADY
+from wedgesweep.measured.frequency import FEWEST_CYCLES, IMPROBABLE, estimate_frequency, stands_out
+from wedgesweep.measured.kinds import goes_one_way, periods
 from wedgesweep.measured.measurement import TestRecord
 from wedgesweep.measured.stationarity import MEND, remedy
 
@@ -20,6 +20,10 @@ FAR, RARE = 10.0, 0.5
 NO_NOISE = 1e-4
 # Times that outliers are looked for, the worst ones first.
 MOST_TRIES = 30
+# Rms of an acceleration (m/s^2) that few rigs reach, 1000 g, but a wrong unit of time does.
+FAST, ACCELERATION = 1e4, MOTIONS.index("acceleration")
+# Most cycles a sample of a loop whose drift is looked at.
+MOST_CYCLES = 0.2
 # Share of samples exactly at the extreme of a record, in runs of at least RUN, from which it is clipped.
 CLIPPED, RUN = 0.01, 3
 # Difference over their range by which samples of one value may differ once they were interpolated.
@@ -34,8 +38,10 @@ def warnings(test: TestRecord) -> list[str]:
         if test.kind == STEADY
         for warning in _of_channel(test, samples)
     ]
-    if test.kind == LOOP and test.force is not None and (clipped := _flat_tops(test.force)):
-        found.append(f"force: {clipped}")
+    if test.kind == LOOP and test.force is not None and test.displacement is not None:
+        faults = _flat_tops(test.force), _drift_of_force(test.time, test.displacement, test.force)
+        found += [f"force: {fault}" for fault in faults if fault]
+    found += _too_fast(test)
     if test.kind == LOOP and test.displacement is not None and goes_one_way(test.displacement):
         fault = (
             "displacement: it goes one way only, so that constant friction looks like the zero of the force"
@@ -92,6 +98,25 @@ def _drift(cycles: Cycles, duration: float, rms: float) -> str | None:
     return (
         f"its mean drifts by {100.0 * change:+.2g} % of its rms over the record; detrend = true removes that"
     )
+
+
+def _drift_of_force(time: np.ndarray, displacement: np.ndarray, force: np.ndarray) -> str | None:
+    """Mean over the cycles of a loop (n,) that drifts."""
+    frequency = estimate_frequency(time, displacement)
+    if not FEWEST_CYCLES <= frequency * (time[-1] - time[0]) <= MOST_CYCLES * time.size:
+        return None
+    return _drift(cut(time, force, frequency), float(time[-1] - time[0]), float(force.std()))
+
+
+def _too_fast(test: TestRecord) -> list[str]:
+    """A motion so fast that the unit of its time, or of itself, is likely another one."""
+    name, samples = next(iter(test.responses.items()))
+    omega = 2.0 * np.pi * periods(samples) / test.duration
+    acceleration = omega ** (ACCELERATION - MOTIONS.index(name)) * float(samples.std())
+    if acceleration < FAST:
+        return []
+    fault = f"its acceleration is about {acceleration:.2g} in SI units, at {omega / (2.0 * np.pi):.3g} Hz"
+    return [f"{name}: {fault}; is its unit right, and that of the time?"]
 
 
 def _change(times: np.ndarray, values: np.ndarray, duration: float) -> float:
