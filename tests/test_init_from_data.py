@@ -773,3 +773,16 @@ def test_a_force_that_drifts_and_a_wrong_unit_of_time_are_told(tmp_path):
     assert re.search(
         r"displacement: its acceleration is about .*at 1\.\d+e\+03 Hz; is its unit right", warning
     )
+
+
+def test_a_force_that_was_clipped_does_not_count(tmp_path):
+    """But one as flat as friction alone, without noise, does."""
+    t, d, f = loop()
+    found = begun(
+        tmp_path, text(tmp_path / "one.csv", t, d, np.minimum(f, 20.0), header="t (s),d (mm),F (N)")
+    )
+    (recorded,) = loop_data(found).recordings
+    assert recorded.force[recorded.known].max() < 20.0
+    assert 0.5 < recorded.known.mean() < 0.8
+    assert not quality.clipped(20.0 * np.sign(d)).any()
+    assert not quality.clipped(np.round(f)).any()

@@ -26,6 +26,8 @@ FAST, ACCELERATION = 1e4, MOTIONS.index("acceleration")
 MOST_CYCLES = 0.2
 # Share of samples exactly at the extreme of a record, in runs of at least RUN, from which it is clipped.
 CLIPPED, RUN = 0.01, 3
+# Share above which flat tops are no clipping, and share of other samples that repeat where there is no noise.
+MOST_CLIPPED, COARSE = 0.4, 0.05
 # Difference over their range by which samples of one value may differ once they were interpolated.
 SAME = 1e-9
 
@@ -163,17 +165,34 @@ def _far_off(test: TestRecord, samples: np.ndarray, noise: NoiseEstimate) -> tup
 
 def _flat_tops(samples: np.ndarray) -> str | None:
     """Runs of samples exactly at the largest or smallest value, but for a few that were interpolated."""
-    ends, same = np.quantile(samples, [0.5 * CLIPPED, 1.0 - 0.5 * CLIPPED]), SAME * np.ptp(samples)
-    share = max(_share_in_runs(np.abs(samples - end) <= same) for end in ends)
+    share = max(float(each.mean()) for each in _at_extremes(samples))
     if share < CLIPPED:
         return None
     fault = f"{100.0 * share:.2g} % of its samples are exactly at its extreme"
     return f"{fault}: the sensor or its amplifier clips, unless the motion sticks there"
 
 
-def _share_in_runs(at_extreme: np.ndarray) -> float:
-    """Share of marked samples (n,) in runs of at least RUN."""
-    padded = np.concatenate([[0], at_extreme.astype(int), [0]])
-    starts, ends = (np.flatnonzero(np.diff(padded) == sign) for sign in (1, -1))
-    runs = ends - starts
-    return float(runs[runs >= RUN].sum() / at_extreme.size)
+def clipped(samples: np.ndarray) -> np.ndarray:
+    """Which of samples (n,) a sensor or its amplifier clipped; none where others repeat as well.
+
+    There numbers are coarse, or free of noise: friction alone is as flat.
+    """
+    none = np.zeros(samples.size, bool)
+    found = np.logical_or.reduce([none, *(each for each in _at_extremes(samples) if each.mean() >= CLIPPED)])
+    others = (np.diff(samples) == 0.0) & ~found[1:]
+    return none if found.mean() > MOST_CLIPPED or others.mean() > COARSE else found
+
+
+def _at_extremes(samples: np.ndarray) -> list[np.ndarray]:
+    """Which of samples (n,) are at the smallest and which at the largest value, in runs of at least RUN."""
+    ends, same = np.quantile(samples, [0.5 * CLIPPED, 1.0 - 0.5 * CLIPPED]), SAME * np.ptp(samples)
+    return [_in_runs(np.abs(samples - end) <= same) for end in ends]
+
+
+def _in_runs(marked: np.ndarray) -> np.ndarray:
+    """Those of the marked samples (n,) that stand in runs of at least RUN."""
+    edges = np.flatnonzero(np.diff(np.r_[False, marked, False].astype(int)))
+    found = np.zeros(marked.size, bool)
+    for start, end in zip(edges[::2], edges[1::2], strict=True):
+        found[start:end] = end - start >= RUN
+    return found

@@ -21,7 +21,7 @@ from wedgesweep.diagnose.sampled_data import MOST_BLOCKS, Decorrelation, decorre
 from wedgesweep.diagnose.smoothing import LowPass, Motion, chosen_cutoff, continuous, motion, noise_of_motion
 from wedgesweep.effects import channel_delay, force_gain, merge
 from wedgesweep.errors import InputError
-from wedgesweep.measured import TestRecord
+from wedgesweep.measured import TestRecord, quality
 from wedgesweep.solvers import imposed_motion
 
 # Below AT_REST standard deviations of its noise the velocity has no sign. Where it stays there for more than
@@ -235,7 +235,8 @@ def recording(test: TestRecord, model: Config, law: str, differences: Sequence[n
         problem = f"{displacement.size} samples are too few for a low-pass of {low_pass.cutoff:.3g} Hz"
         raise InputError([f"{problem}; record for longer, or raise lowpass_hz"])
     own = motion(displacement, noise, low_pass)
-    compared, known = low_pass(force)[places], ~at_rest(own, low_pass)[places]
+    compared = low_pass(force)[places]
+    known = ~(at_rest(own, low_pass) | _spread(quality.clipped(force), low_pass.stride))[places]
     if known.sum() < FEWEST_KNOWN:
         problem = f"its motion is no faster than its noise ({1e3 * own.noise[1]:.3g} mm/s) for long"
         raise InputError([f"{problem}; move it faster, or measure it with less noise"])
@@ -250,6 +251,11 @@ def recording(test: TestRecord, model: Config, law: str, differences: Sequence[n
         problem = f"its noise is {100.0 * found.noise_share:.0f} % of the force, so that it shows nothing"
         raise InputError([f"{problem}; measure a larger force, lower lowpass_hz, or correct the columns"])
     return replace(found, noise_as_stated=found.noise)
+
+
+def _spread(marked: np.ndarray, reach: int) -> np.ndarray:
+    """Samples (n,) within a reach of marked ones."""
+    return np.convolve(marked, np.ones(2 * reach + 1), mode="same") > 0.5
 
 
 def moving_mass(model: Config, law: str) -> float:
