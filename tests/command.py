@@ -24,7 +24,7 @@ def invoke(*arguments: object, code: int = 0) -> str:
 def hang_limit() -> float:
     """Time (s) after which a process is taken to hang: five minutes, or more on a slow or busy machine.
 
-    The only clock in the tests (see test_clocks.py): no test asserts a time.
+    The only clock in the tests (see test_imports.py): no test asserts a time.
     """
     began = perf_counter()
     sum(range(1_000_000))

@@ -1,9 +1,12 @@
-"""How functions are compiled that only compiled functions call."""
+"""How functions are compiled that only compiled functions call, and what is traced of their operations."""
+
+from typing import NamedTuple
 
 import numpy as np
 import pytest
 
-from wedgesweep.compiled import allocating, inlined, inner, inner_code
+from wedgesweep.compiled import allocating, compiled, inlined, inner, inner_code
+from wedgesweep.traced import traced
 
 pytestmark = pytest.mark.skipif(inner_code is None, reason="numba's own compiler is in its place")
 
@@ -78,3 +81,46 @@ def test_operators_of_numbers_are_inferred_once_and_for_this_package_only():
     again = inner(lambda one, other: one * other)
     assert from_python(lambda one, other: again(one, other))(*odd) == 12
     assert len(known) == before + 1
+
+
+class Pair(NamedTuple):
+    """Two numbers."""
+
+    first: float
+    second: float
+
+
+def operations(numbers):
+    (a, b), pair = numbers
+    total = 0.0
+    for k in range(1, 4):
+        total = total + k * a - b / k
+    return Pair(2.0 - pair.first, 3.0 / pair.second), (total, a * b, 1.0 + b)
+
+
+line = traced(operations)
+
+
+@compiled
+def called(a, b, first, second):
+    return line(((a, b), Pair(first, second)))
+
+
+def test_every_operation_is_that_of_python():
+    numbers = 1.3, -0.7, 2.5, 0.4
+    found = called(*numbers)
+    exact = operations((numbers[:2], Pair(*numbers[2:])))
+    assert isinstance(found[0], Pair)
+    assert found[0] == pytest.approx(exact[0], rel=1e-15)
+    assert found[1] == pytest.approx(exact[1], rel=1e-15)
+
+
+def test_a_decision_by_a_value_is_refused():
+    decided = traced(lambda numbers: numbers[0] if numbers[0] else numbers[1])
+
+    @compiled
+    def call(a, b):
+        return decided((a, b))
+
+    with pytest.raises(TypeError, match="decides nothing"):
+        call(1.0, 2.0)

@@ -32,41 +32,24 @@ def all_stated():
         yield equations.of(system, system=name)
 
 
+# Symbols of ratios and counts.
+UNITLESS = {
+    *("mu", "mu_s", "mu_d", "mu_c", "mu_b", "mu_0", "r", "b", "scale", "peak", "rate", "asymmetry", "share"),
+    *("damping_ratio", "exponent", "velocity_exponent", "second", "third", "restitution", "locked_in"),
+    *("s", "s_b", "spread", "i", *(f"b_{place}" for place in "i12345")),
+}
+
+
 def test_every_effect_law_and_system_has_equations_whose_symbols_are_explained():
     for each in all_stated():
         assert each.lines
         assert each.meanings
         for name, meaning in each.meanings.items():
             assert len(meaning.text) > 1, name
-
-
-@pytest.mark.parametrize(("name", "system"), OF_EFFECTS)
-def test_every_fitted_number_of_an_effect_stands_in_its_equations(name, system):
-    numbers = {each.name for each in EFFECTS[name].quantities if each.search}
-    assert numbers <= set(stated(name, system).meanings)
-
-
-def test_symbols_with_a_dimension_have_a_unit():
-    without = {"mu", "mu_s", "mu_d", "mu_c", "mu_b", "mu_0", "r", "b", "scale", "peak", "rate", "asymmetry"}
-    without |= {
-        "damping_ratio",
-        "exponent",
-        "velocity_exponent",
-        "second",
-        "third",
-        "restitution",
-        "locked_in",
-        "share",
-        "s",
-        "s_b",
-        "spread",
-        "i",
-        *(f"b_{place}" for place in "i12345"),
-    }
-    for each in all_stated():
-        unitless = {name for name, meaning in each.meanings.items() if not meaning.unit}
-        vectors = {name for name in unitless if "unit vector" in each.meanings[name].text}
-        assert unitless - vectors <= without
+            assert meaning.unit or name in UNITLESS or "unit vector" in meaning.text, name
+    for name, system in OF_EFFECTS:
+        numbers = {each.name for each in EFFECTS[name].quantities if each.search}
+        assert numbers <= set(stated(name, system).meanings)
 
 
 def test_mathml_is_well_formed_and_holds_every_symbol():
@@ -103,13 +86,10 @@ def test_latex():
     assert latex.line("sqrt(v^2)") == r"\sqrt{v^{2}}"
 
 
-@pytest.mark.parametrize("text", ["(a", "a)", "a +/ b", "a ^", "sin x", "a ? b", "|a", "a]"])
-def test_what_is_no_equation_is_refused(text):
-    with pytest.raises(ValueError, match=r"missing|closed|opens|cannot read"):
-        notation.display(text)
-
-
-def test_a_symbol_that_nobody_explains_is_refused():
+def test_what_is_no_equation_and_symbols_that_nobody_explains_are_refused():
+    for text in ("(a", "a)", "a +/ b", "a ^", "sin x", "a ? b", "|a", "a]"):
+        with pytest.raises(ValueError, match=r"missing|closed|opens|cannot read"):
+            notation.display(text)
     with pytest.raises(KeyError, match="lambda"):
         equations.of(SimpleNamespace(EQUATIONS=("R = lambda z",)))
 

@@ -64,11 +64,17 @@ def test_draws_and_says_what_it_shows(kind, dataset):
     assert [text for text in labels(figure) if "[" not in text] == []  # [1] without a dimension
 
 
-@pytest.mark.few(4)
+def render(figure):
+    """Draw a figure without its layout, which takes longest, and which the test above tries for each kind."""
+    figure.set_layout_engine("none")
+    figure.draw_without_rendering()
+
+
+@pytest.mark.few(2)
 @pytest.mark.parametrize("kind", KINDS)
 def test_units_of_choice_are_in_all_figures_and_move_nothing(kind, dataset):
     shown, usual = figures.draw(dataset, kind, units="us"), figures.draw(dataset, kind)
-    shown.draw_without_rendering()
+    render(shown)
     texts = [text.get_text() for text in shown.findobj(Text) if text.get_visible()]
     assert [text for text in texts if re.search(r"\bmm\b|\bN\b", text)] == []
     limits = [[(ax.get_xlim(), ax.get_ylim()) for ax in figure.axes] for figure in (shown, usual)]
@@ -77,9 +83,9 @@ def test_units_of_choice_are_in_all_figures_and_move_nothing(kind, dataset):
 
 def test_a_tick_stands_where_its_number_is(dataset):
     """Linear and logarithmic axes, and those of panels without a label."""
-    for kind in ("phase-portrait", "peak-to-peak", "lift-off-map"):
+    for kind in ("phase-portrait", "peak-to-peak"):
         figure = figures.draw(dataset, kind, units="us")
-        figure.draw_without_rendering()
+        render(figure)
         panels = [ax for ax in figure.axes if ax.get_label() != "<colorbar>"]
         for ax in panels:
             low, high = sorted(ax.get_ylim())
@@ -89,6 +95,11 @@ def test_a_tick_stands_where_its_number_is(dataset):
             for place, text in inside.items():
                 assert place == pytest.approx(25.4 * float(text or place / 25.4), rel=1e-5)
                 assert len(text) <= 7  # a round number
+    # A logarithmic axis without a positive number is drawn.
+    axis = Figure().add_subplot().yaxis
+    style.power_ticks(axis)
+    label = axis.get_major_formatter()
+    assert [label(value) for value in (0.0, 1e-3, 1e5)] == ["", "10⁻³", "10⁵"]
 
 
 GRIDS = {
@@ -105,21 +116,18 @@ def grid(request):
 @pytest.mark.few(2)
 @pytest.mark.parametrize("kind", KINDS)
 def test_draws_small_and_large_grids(kind, grid):
-    if grid["status"].size == 1 and kind in FEWEST:
-        with pytest.raises(ValueError, match=f"^{kind}: needs {FEWEST[kind]} or more"):
+    needs = {**FEWEST, "map": "two axes with several values"}
+    if grid["status"].size == 1 and kind in needs:
+        with pytest.raises(ValueError, match=f"^{kind}: needs {needs[kind]}"):
             figures.draw(grid, kind)
         return
-    if grid["status"].size == 1 and kind == "map":
-        with pytest.raises(ValueError, match=r"^map: needs two axes with several values"):
-            figures.draw(grid, kind)
-        return
-    figures.draw(grid, kind).draw_without_rendering()
+    render(figures.draw(grid, kind))
 
 
 @pytest.mark.few(1)
 @pytest.mark.parametrize("kind", KINDS)
 def test_draws_a_sweep_in_which_every_case_failed(kind, dataset):
-    figures.draw(everything_failed(dataset), kind).draw_without_rendering()
+    render(figures.draw(everything_failed(dataset), kind))
 
 
 @pytest.mark.few(3)
@@ -127,16 +135,33 @@ def test_draws_a_sweep_in_which_every_case_failed(kind, dataset):
 def test_list_of_cases(kind, dataset):
     ds = fixture_dataset.as_cases(dataset)
     if kind in FROM_LISTS:
-        figures.draw(ds, kind).draw_without_rendering()
+        render(figures.draw(ds, kind))
         return
     with pytest.raises(ValueError, match=f"^{kind}: needs a grid"):
         figures.draw(ds, kind)
 
 
-@pytest.mark.parametrize("kind", FROM_WAVEFORMS)
-def test_says_that_waveforms_are_missing(kind, dataset):
-    with pytest.raises(ValueError, match=rf"^{kind}: the dataset has no displacement.*waveforms"):
-        figures.draw(fixture_dataset.without_waveforms(dataset), kind)
+def test_what_cannot_be_drawn_is_told(dataset):
+    held = dataset.assign(lift_off_fraction=0.0 * dataset["lift_off_fraction"])
+    bare = fixture_dataset.without_waveforms(dataset)
+    for ds, kind, picks, words in (
+        *(
+            (bare, kind, {}, rf"^{kind}: the dataset has no displacement.*waveforms")
+            for kind in FROM_WAVEFORMS
+        ),
+        (dataset, "stickmap", {}, r"no figure 'stickmap'.*stick-map"),
+        (
+            dataset,
+            "response",
+            {"laws": "x"},
+            "^response: unknown option 'laws'; it takes beta, amplitudes, law",
+        ),
+        (dataset, "response", {"beta": 99.0}, "^response: no beta near 99; the dataset has"),
+        (dataset, "peak-to-peak", {"amplitudes": [0.05]}, "no amplitude near 0.05; the dataset has"),
+        (held, "lift-off-map", {}, "lift-off-map: nothing lifts off in these cases"),
+    ):
+        with pytest.raises(ValueError, match=words):
+            figures.draw(ds, kind, **picks)
 
 
 def test_saves(dataset, tmp_path):
@@ -185,7 +210,7 @@ def test_a_single_panel_is_drawn_into_given_axes(kind, dataset):
     figure = Figure(layout="constrained")
     left, right = figure.subplots(1, 2)
     assert figures.draw(one, kind, ax=right) is figure
-    figure.draw_without_rendering()
+    render(figure)
     assert right.has_data()
     assert right.get_xlabel()
     assert right.get_title()
@@ -195,18 +220,27 @@ def test_a_single_panel_is_drawn_into_given_axes(kind, dataset):
         figures.draw(dataset, kind, ax=left)
 
 
-def test_a_case_is_selected_by_single_values(dataset):
+def test_nearest_case_is_chosen_and_named(dataset):
+    figure = figures.draw(dataset, "response", beta=1.7, amplitudes=[0.9e-3, 1.1e-3])
+    assert "1.75" in figure.get_suptitle()
+    assert [tick.get_text() for tick in figure.axes[0].get_yticklabels()] == ["1"]
+    figure = figures.draw(dataset, "phase-portrait", beta=0.9, law="Exponential")
+    assert all("exponential" in ax.get_title() for ax in figure.axes)
+    assert "4 mm" in figures.draw(dataset, "bifurcation", amplitude=3.5e-3).get_suptitle()
     one = dataset.sel(friction_law="coulomb", beta=1.0, amplitude=1e-3)
     assert len(figures.draw(one, "phase-portrait").axes) == 1
     line = figures.draw(one, "peak-to-peak").axes[0].lines[0]
     assert line.get_xdata() == pytest.approx(one["frequency"].item())
 
 
-def test_unknown_figures_and_options_list_the_valid_ones(dataset):
-    with pytest.raises(ValueError, match=r"no figure 'stickmap'.*stick-map"):
-        figures.draw(dataset, "stickmap")
-    with pytest.raises(ValueError, match=r"^response: unknown option 'laws'; it takes beta, amplitudes, law"):
-        figures.draw(dataset, "response", laws="coulomb")
+def test_what_moves_is_shown_by_default(dataset):
+    chosen = cases.pick_amplitudes(dataset, None, 3)
+    fraction = dataset["stick_fraction"].isel(amplitude=chosen)
+    assert len(chosen) == 3
+    assert (fraction < cases.SLIPS).any(["friction_law", "beta"]).all()
+    still = dataset["stick_fraction"].where(dataset["beta"] > 0.9, 1.0)
+    drawn = figures.draw(dataset.assign(stick_fraction=still), "phase-portrait")
+    assert "β$ = 1 (" in drawn.axes[0].get_title()
 
 
 def test_frictionless_ratio(dataset):
@@ -276,7 +310,7 @@ def test_what_the_base_model_knows_is_not_said_of_effects_with_mechanics_of_thei
     assert np.isnan(amplitude_ratio.frictionless_ratio(unknown, np.array([1.0, 2.0]))).all()
     ratio, sticking = (figures.draw(unknown, kind) for kind in ("amplitude-ratio", "stick-map"))
     for figure in (ratio, sticking):
-        figure.draw_without_rendering()
+        render(figure)
     assert not ratio.axes[0].get_legend_handles_labels()[1]
     assert "breakaway" not in legend(sticking)
     heavy = dataset.assign_attrs(
@@ -284,13 +318,6 @@ def test_what_the_base_model_knows_is_not_said_of_effects_with_mechanics_of_thei
     )
     ratio = amplitude_ratio.frictionless_ratio(heavy, np.array([20.0]))
     assert ratio < amplitude_ratio.frictionless_ratio(dataset, np.array([20.0]))
-
-
-def test_a_logarithmic_axis_without_a_positive_number_is_drawn():
-    axis = Figure().add_subplot().yaxis
-    style.power_ticks(axis)
-    label = axis.get_major_formatter()
-    assert [label(value) for value in (0.0, 1e-3, 1e5)] == ["", "10⁻³", "10⁵"]
 
 
 def test_stick_map_cells_enclose_their_centres():
@@ -303,41 +330,18 @@ def test_stick_map_cells_enclose_their_centres():
     assert maps.cell_edges(np.array([0.0, 1.0, 2.0]), False).tolist() == [0.0, 0.5, 1.5, 2.5]
 
 
-def test_nearest_case_is_chosen_and_named(dataset):
-    figure = figures.draw(dataset, "response", beta=1.7, amplitudes=[0.9e-3, 1.1e-3])
-    assert "1.75" in figure.get_suptitle()
-    assert [tick.get_text() for tick in figure.axes[0].get_yticklabels()] == ["1"]
-    figure = figures.draw(dataset, "phase-portrait", beta=0.9, law="Exponential")
-    assert all("exponential" in ax.get_title() for ax in figure.axes)
-    figure = figures.draw(dataset, "bifurcation", amplitude=3.5e-3)
-    assert "4 mm" in figure.get_suptitle()
-    figure = figures.draw(dataset, "peak-to-peak", amplitudes=5e-4)
-    assert [ax.get_title() for ax in figure.axes] == ["$a$ = 0.5 mm"]
-
-
-def test_what_is_far_from_the_grid_is_an_error(dataset):
-    for kind, picks in (("response", {"beta": 99.0}), ("peak-to-peak", {"amplitudes": [0.05]})):
-        with pytest.raises(
-            ValueError, match=f"^{kind}: no (beta near 99|amplitude near 0.05); the dataset has"
-        ):
-            figures.draw(dataset, kind, **picks)
-
-
-@pytest.mark.parametrize("kind", ["amplitude-ratio", "peak-to-peak", "stick-map"])
-def test_cases_outside_of_validity_and_unsettled_ones_are_marked(kind, dataset):
-    told = legend(figures.draw(dataset, kind))
-    assert "lift-off: outside of validity" in told
-    assert "not settled" in told
-    plain = dataset.assign(lift_off_fraction=0.0 * dataset["lift_off_fraction"], period=1 + dataset["status"])
-    told = legend(figures.draw(plain, kind))
-    assert "lift-off" not in told
-    assert "not settled" not in told
-
-
-def test_a_map_of_lift_off_needs_cases_that_lift_off(dataset):
-    held = dataset.assign(lift_off_fraction=0.0 * dataset["lift_off_fraction"])
-    with pytest.raises(ValueError, match="lift-off-map: nothing lifts off in these cases"):
-        figures.draw(held, "lift-off-map")
+def test_cases_that_failed_lifted_off_or_did_not_settle_are_marked(dataset):
+    lifted = 0.0 * dataset["lift_off_fraction"]
+    plain = dataset.assign(lift_off_fraction=lifted, period=1 + dataset["status"])
+    for kind in ("amplitude-ratio", "stick-map"):
+        for words in ("lift-off: outside of validity", "not settled"):
+            assert words in legend(figures.draw(dataset, kind))
+            assert words not in legend(figures.draw(plain, kind))
+        if kind != "stick-map":
+            figure = figures.draw(dataset.isel(amplitude=[4]), kind)
+            assert "no result" in figure.get_suptitle()
+    clean = fixture_dataset.build(failed=None)
+    assert "no result" not in figures.draw(clean, "amplitude-ratio").get_suptitle()
 
 
 def test_marked_points_are_those_of_the_variables(dataset):
@@ -370,21 +374,6 @@ def test_every_figure_takes_a_law(kind, dataset):
     assert "static-dynamic" not in told
 
 
-def test_failed_cases_are_marked(dataset):
-    for kind in ("amplitude-ratio", "peak-to-peak"):
-        figure = figures.draw(dataset.isel(amplitude=[4]), kind)
-        assert "no result" in figure.get_suptitle()
-    clean = fixture_dataset.build(failed=None)
-    assert "no result" not in figures.draw(clean, "amplitude-ratio").get_suptitle()
-
-
-def test_amplitudes_shown_by_default_slip(dataset):
-    chosen = cases.pick_amplitudes(dataset, None, 3)
-    fraction = dataset["stick_fraction"].isel(amplitude=chosen)
-    assert len(chosen) == 3
-    assert (fraction < cases.SLIPS).any(["friction_law", "beta"]).all()
-
-
 def test_many_cases_are_a_density(dataset, monkeypatch):
     monkeypatch.setattr(amplitude_ratio, "MOST_CASES", 50)
     ax = figures.draw(dataset, "amplitude-ratio").axes[0]
@@ -395,9 +384,3 @@ def test_many_cases_are_a_density(dataset, monkeypatch):
     assert "not settled" in legend(figures.draw(dataset, "lines"))
     monkeypatch.setattr(lines, "MOST_MARKED", 50)
     assert "not settled" not in legend(figures.draw(dataset, "lines"))
-
-
-def test_phase_portraits_show_motion_by_default(dataset):
-    still = dataset["stick_fraction"].where(dataset["beta"] > 0.9, 1.0)
-    drawn = figures.draw(dataset.assign(stick_fraction=still), "phase-portrait")
-    assert "β$ = 1 (" in drawn.axes[0].get_title()

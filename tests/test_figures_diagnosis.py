@@ -44,14 +44,17 @@ def test_explanations_by_more_than_two_effects_have_a_colour_of_their_own():
 
 
 def draw(kind, result):
+    """Draw a figure without its layout, which takes longest, and which pages of reports have."""
     figure = figures.draw(result, kind)
+    figure.set_layout_engine("none")
     figure.draw_without_rendering()
     return figure
 
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_draws_and_says_what_it_shows(kind):
-    figure = draw(kind, build())
+    """The page of a report renders all of them (test_report.py)."""
+    figure = figures.draw(build(), kind)
     assert figure.get_suptitle()
     words = [text for ax in figure.axes for text in (ax.get_xlabel(), ax.get_ylabel()) if text]
     assert words
@@ -59,11 +62,12 @@ def test_draws_and_says_what_it_shows(kind):
     assert diagnosis.FIGURES[kind].load().draw.__doc__.count("To see:") == 1
 
 
-def test_a_diagnosis_is_drawn_in_units_of_choice():
+def test_a_diagnosis_is_drawn_in_units_of_choice_and_the_same_each_time():
     figure = figures.draw(build(), "waveforms", units="us")
     words = {text for ax in figure.axes if (text := ax.get_ylabel())}
     assert {text.partition("[")[2] for text in words} == {"in]", "in/s]", "mil]"}
     assert " in\n" in figure.axes[0].get_title()
+    assert svg(draw("plateaus", build())) == svg(draw("plateaus", build()))
 
 
 # Without a cause, without known amplitudes, with an attempt. That of a cause is drawn above, and all figures
@@ -155,17 +159,13 @@ def test_candidates_keep_the_base_model_and_leave_out_what_failed(monkeypatch):
     assert len(shown) == 4
 
 
-def test_a_sine_has_the_plateau_that_is_drawn_for_it():
+def test_what_is_drawn_beside_the_tests():
     velocity = np.cos(2.0 * np.pi * (np.arange(100_000) + 0.5) / 100_000)
     assert pytest.approx((np.abs(velocity) < 0.05).mean(), abs=1e-4) == plateaus.SINE
-
-
-def test_like_amplitudes_are_joined():
+    # Like amplitudes are joined.
     groups = peak_to_peak.groups(np.array([1e-4, 1e-3, 1.02e-4, 1.05e-3]))
     assert [sorted(group.tolist()) for group in groups] == [[0, 2], [1, 3]]
-
-
-def test_residual_force_that_no_test_gives():
+    # A force that no test gives is told.
     result = build()
     result.data["leftover_force"][:] = np.nan
     with pytest.raises(ValueError, match="leftover-force: the tests"):
@@ -182,10 +182,6 @@ def test_held_out_tests_by_place_or_by_name():
     assert lines[0] == lines[1]
 
 
-def test_svg_is_the_same_each_time():
-    assert svg(draw("plateaus", build())) == svg(draw("plateaus", build()))
-
-
 def test_one_panel_is_drawn_into_given_axes():
     figure, result = Figure(layout="constrained"), build()
     left, right = figure.subfigures(1, 2)
@@ -199,20 +195,18 @@ def test_one_panel_is_drawn_into_given_axes():
     assert figures.draw(result, "phase-plane", ax=right.subplots(), tests=[0]) is figure
 
 
-@pytest.mark.parametrize("kind", OF_TRANSIENTS)
-def test_transients(kind):
-    figure = draw(kind, fixture_transient.build())
-    assert figure.get_suptitle()
-    words = [text for ax in figure.axes for text in (ax.get_xlabel(), ax.get_ylabel()) if text]
-    assert [text for text in words if "[" not in text] == []
-    with pytest.raises(ValueError, match=f"^{kind}: the tests are no transients"):
-        draw(kind, build())
-
-
-@pytest.mark.parametrize("kind", [name for name, each in diagnosis.FIGURES.items() if each.tests == "steady"])
-def test_figures_of_steady_tests_say_that_there_are_none(kind):
-    with pytest.raises(ValueError, match=f"^{kind}: no test is of steady vibration"):
-        figures.draw(fixture_transient.build(), kind)
+def test_figures_are_those_of_the_kind_of_tests():
+    transients = fixture_transient.build()
+    for kind in OF_TRANSIENTS:
+        figure = draw(kind, transients)
+        assert figure.get_suptitle()
+        words = [text for ax in figure.axes for text in (ax.get_xlabel(), ax.get_ylabel()) if text]
+        assert [text for text in words if "[" not in text] == []
+        with pytest.raises(ValueError, match=f"^{kind}: the tests are no transients"):
+            draw(kind, build())
+    for kind in (name for name, each in diagnosis.FIGURES.items() if each.tests == "steady"):
+        with pytest.raises(ValueError, match=f"^{kind}: no test is of steady vibration"):
+            figures.draw(transients, kind)
 
 
 def test_swings_reach_from_one_turning_point_to_the_next():

@@ -1,40 +1,40 @@
 """Formatted numbers show what was computed, to the digits that are known."""
 
-import pytest
-
 from wedgesweep import formatting
 from wedgesweep.report import phrases
 
-
-@pytest.mark.parametrize(
-    ("value", "text"),
-    [
-        (0.0, "0"),
-        (5.1, "5.10"),
-        (-0.0123, "-0.0123"),
-        (61234.0, "61\N{NARROW NO-BREAK SPACE}234"),
-        (3.14e8, "3.14 × 10⁸"),
-        (-2.0e-5, "-2.00 × 10⁻⁵"),
-        (float("nan"), "–"),
-        (float("inf"), "–"),
-        (None, "–"),
-    ],
-)
-def test_number(value, text):
-    assert formatting.number(value) == text
+NUMBERS = {
+    0.0: "0",
+    5.1: "5.10",
+    -0.0123: "-0.0123",
+    61234.0: "61\N{NARROW NO-BREAK SPACE}234",
+    3.14e8: "3.14 × 10⁸",
+    -2.0e-5: "-2.00 × 10⁻⁵",
+    float("nan"): "–",
+    float("inf"): "–",
+    None: "–",
+}
 
 
-def test_short_numbers_have_no_zeros_at_their_end():
-    assert [formatting.short(value) for value in (24.0, 0.1, 14.6667, 120.0, 1e-7)] == [
-        *("24", "0.1", "14.67", "120", "1.000 × 10⁻⁷")
-    ]
+def test_numbers():
+    assert {value: formatting.number(value) for value in NUMBERS} == NUMBERS
+    # Short ones have no zeros at their end.
+    short = {24.0: "24", 0.1: "0.1", 14.6667: "14.67", 120.0: "120", 1e-7: "1.000 × 10⁻⁷"}
+    assert {value: formatting.short(value) for value in short} == short
+    # A share that is not all is not called all.
+    shares = {0.5: "50", 0.991: "99.1", 0.9999999: "99.99", 1.0: "100", -0.2: "-20"}
+    for share, text in shares.items():
+        assert formatting.percent(share) == f"{text}{formatting.NO_BREAK}%"
+    times = {0.34: "0.3 s", 59.6: "60 s", 119: "119 s", 600: "10 min", 7500: "2 h 5 min"}
+    assert {seconds: formatting.duration(seconds) for seconds in times} == times
+    sizes = {3: "3 B", 24.6e6: "25 MB", 999.7e3: "1 MB", 1.23e9: "1.2 GB"}
+    assert {count: formatting.size(count) for count in sizes} == sizes
 
 
-@pytest.mark.parametrize(
-    ("share", "text"), [(0.5, "50"), (0.991, "99.1"), (0.9999999, "99.99"), (1.0, "100"), (-0.2, "-20")]
-)
-def test_a_share_that_is_not_all_is_not_called_all(share, text):
-    assert formatting.percent(share) == f"{text}{formatting.NO_BREAK}%"
+def test_keys_become_a_name_and_a_unit():
+    assert phrases.split_key("third_phase_deg") == ("third phase", "°")
+    assert phrases.split_key("coefficient_N_per_mm3") == ("coefficient", "N/mm³")
+    assert phrases.split_key("scale") == ("scale", "")
 
 
 def test_an_estimate_has_the_digits_that_its_interval_allows():
@@ -49,24 +49,3 @@ def test_an_estimate_has_the_digits_that_its_interval_allows():
     assert phrases.rounded({"value": 1e-4, "ci95": [1e-5, 0.0013]}) == ("0.0001", "1 × 10⁻⁵", "0.0013")
     assert "no interval" in phrases.estimate("scale", {"value": 1.0, "ci95": [None, None]})
     assert "not determined" in phrases.estimate("scale", {"value": None, "ci95": [None, None]})
-
-
-@pytest.mark.parametrize(
-    ("key", "name", "unit"),
-    [
-        ("third_phase_deg", "third phase", "°"),
-        ("coefficient_N_per_mm3", "coefficient", "N/mm³"),
-        ("scale", "scale", ""),
-    ],
-)
-def test_keys_become_a_name_and_a_unit(key, name, unit):
-    assert phrases.split_key(key) == (name, unit)
-
-
-def test_times_and_sizes():
-    assert [formatting.duration(seconds) for seconds in (0.34, 59.6, 119, 600, 7500)] == [
-        *("0.3 s", "60 s", "119 s", "10 min", "2 h 5 min")
-    ]
-    assert [formatting.size(count) for count in (3, 24.6e6, 999.7e3, 1.23e9)] == [
-        *("3 B", "25 MB", "1 MB", "1.2 GB")
-    ]

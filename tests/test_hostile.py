@@ -30,59 +30,56 @@ def here(tmp_path, monkeypatch):
 @pytest.mark.parametrize(
     ("command", "file"),
     [
-        (["check", "pipe"], "pipe"),
-        (["run", "pipe"], "pipe"),
-        (["check", "/dev/zero"], "/dev/zero"),
-        (["check", "measured.toml"], "one.csv"),
-        (["check", "measured.toml"], "model.toml"),
-        (["check", "pipe.nc"], "pipe.nc"),
-        (["status", "pipe.nc"], "pipe.nc"),
-        (["plot", "all", "pipe.nc"], "pipe.nc"),
-        (["run", "small.toml"], "small.nc.partial"),
-        (["run", "small.toml", "--fresh"], "small.nc.partial"),
-        (["run", "small.toml"], "small.nc"),
-        (["status", "small.nc"], "small.nc.partial"),
-        (["diagnose", "pipe"], "pipe"),
-        (["synthesize", "small.toml", "--tests", "pipe"], "pipe"),
+        ("check pipe", "pipe"),
+        ("run /dev/zero", "/dev/zero"),
+        ("check measured.toml", "one.csv"),
+        ("check measured.toml", "model.toml"),
+        ("check pipe.nc", "pipe.nc"),
+        ("status pipe.nc", "pipe.nc"),
+        ("plot all pipe.nc", "pipe.nc"),
+        ("run small.toml", "small.nc.partial"),
+        ("run small.toml --fresh", "small.nc.partial"),
+        ("run small.toml", "small.nc"),
+        ("status small.nc", "small.nc.partial"),
+        ("diagnose pipe", "pipe"),
+        ("synthesize small.toml --tests pipe", "pipe"),
+        # As root, ``-o /dev/null`` would leave a plain file there.
+        ("init out.toml --force", "out.toml"),
+        ("schema -o out.json", "out.json"),
+        ("case small.toml --beta 1 --amplitude 1 -o out.nc", "out.nc"),
+        ("run small.toml -o out.nc", "out.nc"),
+        ("plot friction-laws made.nc -o out.png", "out.png"),
     ],
 )
-def test_a_pipe_or_device_is_refused_at_once(here, command, file):
+def test_a_pipe_or_device_is_neither_read_nor_replaced(here, command, file):
+    if "made.nc" in command:
+        fixture_dataset.build().to_netcdf("made.nc")
     if not file.startswith("/"):
         (here / file).unlink(missing_ok=True)
         os.mkfifo(here / file)
-    assert f"{file}: not a regular file" in invoke(*command, code=2)
+    assert f"{file}: not a regular file" in invoke(*command.split(), code=2)
+    assert file.startswith("/") or (here / file).is_fifo()
 
 
-@pytest.mark.parametrize(
-    "command",
-    [
-        ["init", "out.toml", "--force"],
-        ["schema", "-o", "out.toml"],
-        ["case", "small.toml", "--beta", "1", "--amplitude", "1", "-o", "out.toml"],
-        ["run", "small.toml", "-o", "out.toml"],
-        ["plot", "friction-laws", "made.nc", "-o", "out.toml"],
-    ],
-)
-def test_no_output_takes_the_place_of_a_pipe_or_device(here, command):
-    """As root, ``-o /dev/null`` would leave a plain file there."""
-    ending = {"init": "toml", "schema": "json", "case": "nc", "run": "nc", "plot": "png"}[command[0]]
-    command = [word.replace("out.toml", f"out.{ending}") for word in command]
-    fixture_dataset.build().to_netcdf("made.nc")
-    os.mkfifo(here / f"out.{ending}")
-    assert f"out.{ending}: not a regular file" in invoke(*command, code=2)
-    assert (here / f"out.{ending}").is_fifo()
-
-
-@pytest.mark.parametrize(
-    "command", [["init", "a\0b"], ["run", "small.toml", "-o", "a\0b.nc"], ["status", "\0"], ["check", "a\0"]]
-)
-def test_a_null_character_in_an_argument(here, command):
-    assert "cannot hold a null character" in invoke(*command, code=2)
-
-
-@pytest.mark.parametrize("command", [["init"], ["status"], ["run", "small.toml", "-o"]])
-def test_an_empty_path_is_not_the_current_directory(here, command):
-    assert "an empty path" in invoke(*command, "", code=2)
+def test_null_characters_and_empty_paths(here):
+    for command in (
+        ["init", "a\0b"],
+        ["run", "small.toml", "-o", "a\0b.nc"],
+        ["status", "\0"],
+        ["check", "a\0"],
+    ):
+        assert "cannot hold a null character" in invoke(*command, code=2)
+    for command in (["init"], ["status"], ["run", "small.toml", "-o"]):
+        assert "an empty path" in invoke(*command, "", code=2)
+    with pytest.raises(IsADirectoryError), files.written(files.Path()):
+        pass
+    text = fixture_measured.MEASURED.replace("one.csv", "one\\u0000.csv").replace("model.t", "model\\u0000.t")
+    (here / "measured.toml").write_text(text)
+    told = invoke("check", "measured.toml", code=2)
+    assert "measurement.model: " in told
+    assert told.count("holds a null character") == 2
+    with pytest.raises(OSError, match="null character"):
+        files.regular(here / "x\0.csv")
 
 
 @pytest.mark.parametrize("name", ["model.t", "one.c"])
@@ -95,21 +92,13 @@ def test_a_name_longer_than_a_system_takes(here, name):
     assert max(map(len, told.splitlines())) < 500
 
 
-def test_an_output_without_a_name(here):
-    with pytest.raises(IsADirectoryError), files.written(files.Path()):
-        pass
-
-
-def test_attributes_of_the_wrong_kind(here):
+def test_datasets_that_are_damaged_or_of_another_program(here, monkeypatch):
     whole = fixture_dataset.build()
     for name, value in (("config", 3), ("omega_n", "x")):
         whole.assign_attrs({name: value}).to_netcdf("other.nc")
         said = invoke("plot", "friction-laws", "other.nc", code=2)
         assert f"other.nc: not the dataset of a sweep: its attribute {name}" in said
-
-
-def test_whatever_netcdf4_raises_the_file_is_damaged(here, monkeypatch):
-    """A file with a damaged dimension ended in an AttributeError of the library."""
+    # A file with a damaged dimension ended in an AttributeError of the library.
     import netCDF4
 
     (here / "small.nc").write_bytes(b"\x89HDF\r\n\x1a\n")
@@ -127,16 +116,6 @@ def test_an_empty_file_is_replaced_where_that_is_asked_for(here):
     assert "small.nc: empty file; run --fresh replaces it" in invoke("run", "small.toml", code=2)
     invoke("run", "small.toml", "--fresh", "--n-jobs", 1)
     assert (here / "small.nc").stat().st_size > 0
-
-
-def test_a_null_character_in_a_path(here):
-    text = fixture_measured.MEASURED.replace("one.csv", "one\\u0000.csv").replace("model.t", "model\\u0000.t")
-    (here / "measured.toml").write_text(text)
-    told = invoke("check", "measured.toml", code=2)
-    assert "measurement.model: " in told
-    assert told.count("holds a null character") == 2
-    with pytest.raises(OSError, match="null character"):
-        files.regular(here / "x\0.csv")
 
 
 def test_what_a_killed_process_left_is_removed_and_nothing_else(here):
@@ -184,18 +163,15 @@ def test_umlauts_where_the_locale_has_none(here):
         assert b"pr" in told
 
 
-@pytest.mark.parametrize(
-    ("text", "words"),
-    [
+def test_absurd_toml_is_refused_in_a_line(here):
+    for text, words in (
         (f"title = 0x{'f' * 5000}\n", "title: 0xfff"),
         (f"title = {'[' * 3000}{']' * 3000}\n", "not valid TOML: nested more than 20 deep"),
         (f"a{'.a' * 1000} = 1\n", "not valid TOML: nested more than 20 deep"),
-    ],
-)
-def test_absurd_toml_is_refused_in_a_line(here, text, words):
-    (here / "x.toml").write_text(text + CONFIG.replace('title = "small"', ""))
-    for command in ("check", "run"):
-        assert f"x.toml: {words}" in invoke(command, "x.toml", code=2)
+    ):
+        (here / "x.toml").write_text(text + CONFIG.replace('title = "small"', ""))
+        for command in ("check", "run"):
+            assert f"x.toml: {words}" in invoke(command, "x.toml", code=2)
 
 
 def test_a_listed_case_is_as_much_work_among_many_as_among_few(here):
@@ -215,27 +191,7 @@ def test_a_listed_case_is_as_much_work_among_many_as_among_few(here):
     assert "sweep.case[2000]: repeats sweep.case[0]; keep one" in invoke("check", "many.toml", code=2)
 
 
-def test_a_foreign_report_in_the_place_of_a_diagnosis_stays(here):
-    (here / "result").mkdir()
-    (here / "result" / "report.html").write_text("mine")
-    told = invoke("diagnose", "measured.toml", "-o", "result", code=2)
-    assert "result/report.html: not the result of a diagnosis; choose another -o" in told
-    assert (here / "result" / "report.html").read_text() == "mine"
-
-
-def test_an_earlier_diagnosis_gives_way_to_a_complete_one_only(here):
-    for name in ("made", "result"):
-        (here / name).mkdir()
-    for name in ("diagnosis.json", "report.html", "gain.png", "mine.txt"):
-        (here / "result" / name).write_text("old")
-    for name in ("diagnosis.json", "diagnosis.nc"):
-        (here / "made" / name).write_text("new")
-    _move(here / "made", here / "result")
-    left = {path.name: path.read_text() for path in (here / "result").iterdir()}
-    assert left == {"diagnosis.json": "new", "diagnosis.nc": "new", "mine.txt": "old"}
-
-
-def test_a_diagnosis_leaves_its_result_and_nothing_else(here, monkeypatch):
+def test_a_diagnosis_leaves_its_result_and_nothing_else_and_a_foreign_report_stays(here, monkeypatch):
     found = DiagnosisResult(*fixture_diagnosis.build(), "extended")
     monkeypatch.setattr(api, "diagnose_measurement", lambda *given, **more: found)
     before = set(here.iterdir())
@@ -244,3 +200,17 @@ def test_a_diagnosis_leaves_its_result_and_nothing_else(here, monkeypatch):
     assert set(here.iterdir()) - before == {here / "results"}
     assert [path.name for path in (here / "results").iterdir()] == ["first"]
     assert len(list((here / "results" / "first").iterdir())) == 3
+    (here / "result").mkdir()
+    (here / "result" / "report.html").write_text("mine")
+    told = invoke("diagnose", "measured.toml", "-o", "result", code=2)
+    assert "result/report.html: not the result of a diagnosis; choose another -o" in told
+    assert (here / "result" / "report.html").read_text() == "mine"
+    # An earlier result gives way to a complete one only.
+    for name in ("diagnosis.json", "report.html", "gain.png", "mine.txt"):
+        (here / "result" / name).write_text("old")
+    (here / "made").mkdir()
+    for name in ("diagnosis.json", "diagnosis.nc"):
+        (here / "made" / name).write_text("new")
+    _move(here / "made", here / "result")
+    left = {path.name: path.read_text() for path in (here / "result").iterdir()}
+    assert left == {"diagnosis.json": "new", "diagnosis.nc": "new", "mine.txt": "old"}

@@ -1,14 +1,16 @@
-"""Imports run one way (table below), and only the command line prints or exits."""
+"""Imports run one way (table below), only the command line prints or exits, and no test asserts a time."""
 
 import ast
+import os
 import re
-from functools import cache
+from functools import cache, partial
 from graphlib import TopologicalSorter
 from pathlib import Path
 
 import pytest
 
-from tests import small_sweep
+from tests import command, small_sweep
+from wedgesweep import processes
 
 ROOT = Path(__file__).parent.parent
 PACKAGE, SCRIPTS = ROOT / "wedgesweep", ROOT / "scripts"
@@ -193,3 +195,49 @@ def test_what_is_not_needed_is_not_loaded(code):
     script = f"import sys\n{code}\nprint('loaded:', *sys.modules.keys() & {UNLOADED[code]!r})"
     found = small_sweep.ended("-c", script)
     assert found.stdout.splitlines()[-1] == "loaded:"
+
+
+TESTS = Path(__file__).parent
+CLOCKS = {
+    *("time", "monotonic", "perf_counter", "process_time", "thread_time"),
+    *("time_ns", "monotonic_ns", "perf_counter_ns", "process_time_ns", "thread_time_ns"),
+    *("clock_gettime", "clock_gettime_ns", "getrusage", "timeit", "default_timer", "now", "utcnow"),
+}
+MODULES = {"time", "resource", "timeit", "datetime"}
+
+
+def clocks(source: str) -> list[str]:
+    """Clocks that some Python code reads, imported by name or called through their modules."""
+    found = []
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.ImportFrom) and node.module in MODULES:
+            found += [name.name for name in node.names if name.name in CLOCKS]
+        if isinstance(node, ast.Attribute) and node.attr in CLOCKS:
+            owner = getattr(node.value, "attr", None) or getattr(node.value, "id", "")
+            found += [f"{owner}.{node.attr}"] if owner in MODULES else []
+    return found
+
+
+def test_only_the_limit_of_hanging_processes_reads_a_clock():
+    found = {path: clocks(path.read_text()) for path in TESTS.rglob("*.py")}
+    assert found.pop(Path(command.__file__)) == ["perf_counter"]
+    assert {path.name: names for path, names in found.items() if names} == {}
+
+
+def endless():
+    while True:
+        pass
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="processes cannot fork here")
+@pytest.mark.parametrize("work", [endless, partial(os._exit, 1)], ids=["endless", "dies"])
+def test_a_library_that_dies_or_finds_no_end_is_an_error(monkeypatch, work):
+    monkeypatch.setattr(processes, "MOST_WORK", 1)
+    with pytest.raises(OSError, match="gave up, or found no end"):
+        processes.apart(work)
+
+
+def test_what_is_found_apart_comes_back():
+    assert processes.apart(divmod, 7, 2) == (3, 1)
+    with pytest.raises(ZeroDivisionError):
+        processes.apart(divmod, 7, 0)

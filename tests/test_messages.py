@@ -106,10 +106,7 @@ def test_progress_of_a_diagnosis_as_log_lines(capfd, clock):
         "single effects: 21 of 21",
         "held-out tests",
     ]
-
-
-def test_slow_steps_are_told_one_by_one(capfd, clock):
-    messages.begin()
+    # Slow steps are told one by one.
     report("single effects", 21, 30.0, clock)
     told = lines(capfd)
     assert len(told) == 23
@@ -129,7 +126,7 @@ def test_time_left_leaves_out_what_was_compiled(capfd, clock, monkeypatch):
     assert lines(capfd)[-1] == "single effects: 1 of 4, about 6.0 s left"
 
 
-def test_progress_of_a_diagnosis_on_a_terminal_is_one_line(capfd, clock, monkeypatch):
+def test_progress_on_a_terminal_is_one_line_that_messages_leave_below_them(capfd, clock, monkeypatch):
     monkeypatch.setattr("sys.stderr.isatty", lambda: True, raising=False)
     messages.begin()
     report("single effects", 3, 2.0, clock)
@@ -142,10 +139,6 @@ def test_progress_of_a_diagnosis_on_a_terminal_is_one_line(capfd, clock, monkeyp
         "single effects: 3 of 3",
         "held-out tests\n",
     ]
-
-
-def test_a_message_leaves_the_progress_line_below_it(capfd, monkeypatch):
-    monkeypatch.setattr("sys.stderr.isatty", lambda: True, raising=False)
     messages.begin()
     messages.show_status("1 of 3")
     messages.log.warning("odd")

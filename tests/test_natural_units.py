@@ -34,25 +34,21 @@ def test_the_config_of_a_bogie_is_that_of_the_bench_at_another_size():
 
 
 @pytest.mark.parametrize("size", RIGS.values(), ids=RIGS)
-@pytest.mark.parametrize(("name", "quantity"), QUANTITIES, ids=lambda one: getattr(one, "key", one))
-def test_every_range_is_in_proportion(name, quantity, size):
-    expected = np.array(quantity.search) * size.factor(quantity.dimension)
-    np.testing.assert_allclose(quantity.searched(units(size)), expected, rtol=1e-12)
-    assert quantity.searched() == quantity.search
-
-
-@pytest.mark.parametrize("size", RIGS.values(), ids=RIGS)
-@pytest.mark.parametrize("name", candidates())
-def test_fits_start_at_the_same_places_of_their_ranges(name, size):
+def test_ranges_and_the_places_where_fits_start_are_in_proportion(size):
     """The fitted vector is the same at every size; what is simulated is in proportion, and comes back."""
-    bench, rig = Hypothesis((name,)), Hypothesis((name,), units=units(size))
-    np.testing.assert_array_equal(rig.starts(), bench.starts())
-    np.testing.assert_array_equal(rig.scale, bench.scale)
-    for x in bench.starts():
-        known, found = bench.in_key_units(x)[name], rig.in_key_units(x)[name]
-        expected = size.numbers(EFFECTS[name].quantities, known)
-        assert found == pytest.approx(expected, rel=1e-12)
-        np.testing.assert_allclose(rig.at({name: found}), bench.at({name: known}), rtol=1e-9, atol=1e-12)
+    for name, quantity in QUANTITIES:
+        expected = np.array(quantity.search) * size.factor(quantity.dimension)
+        assert quantity.searched(units(size)) == pytest.approx(expected, rel=1e-12), name
+        assert quantity.searched() == quantity.search
+    for name in candidates():
+        bench, rig = Hypothesis((name,)), Hypothesis((name,), units=units(size))
+        np.testing.assert_array_equal(rig.starts(), bench.starts())
+        np.testing.assert_array_equal(rig.scale, bench.scale)
+        for x in bench.starts():
+            known, found = bench.in_key_units(x)[name], rig.in_key_units(x)[name]
+            expected = size.numbers(EFFECTS[name].quantities, known)
+            assert found == pytest.approx(expected, rel=1e-12)
+            np.testing.assert_allclose(rig.at({name: found}), bench.at({name: known}), rtol=1e-9, atol=1e-12)
 
 
 def test_amplitudes_start_on_either_side_beside_a_logarithm_and_at_zero_without():

@@ -4,8 +4,7 @@ from collections import Counter
 
 import numpy as np
 import pytest
-from reproduce import claims, experiment, laws, sticking, suspension
-from reproduce import runs as running
+from reproduce import claims, laws, sticking, suspension
 from reproduce.findings import (
     CONTRADICTED,
     HOLDS,
@@ -18,12 +17,11 @@ from reproduce.findings import (
     near,
     untested,
 )
-from reproduce.runs import Run, Runs, mirrored_columns, single
+from reproduce.runs import mirrored_columns, single
 
 from tests import fixture_reproduction
 from tests.fixture_reproduction import AMPLITUDES
 
-SETTLED = {"solver": {"method": "event-driven", "settle_periods": 60}}
 BY_NUMBER = {claim.number: claim for claim in claims.CLAIMS}
 
 
@@ -45,26 +43,20 @@ def test_the_claims_are_the_seventeen_and_each_has_a_recorded_verdict():
     assert all(claim.unilateral == claim.recorded for claim in large)
 
 
-@pytest.mark.parametrize(
-    ("checks", "expected"),
-    [
+def test_the_verdict_follows_from_the_checks():
+    for checks, expected in (
         ((True, True), HOLDS),
         ((True, False), PARTLY),
         ((False, False), CONTRADICTED),
         ((None, None), NOT_TESTABLE),
         ((None, True), HOLDS),
         ((None, False), CONTRADICTED),
-    ],
-)
-def test_the_verdict_follows_from_the_checks(checks, expected):
-    made = [untested("x", "y") if holds is None else above("x", holds, 0.5) for holds in checks]
-    assert Finding("", "", tuple(made)).verdict == expected
-
-
-def test_criteria_hold_up_to_their_limits_and_never_for_nan():
+    ):
+        made = [untested("x", "y") if holds is None else above("x", holds, 0.5) for holds in checks]
+        assert Finding("", "", tuple(made)).verdict == expected
+    # Criteria hold up to their limits, and never for nan.
     assert near("x", -2.0, -2.1, 0.05).holds
     assert not near("x", -1.9, -2.1, 0.05).holds
-    assert near("x", 1800, 1800, 0.0).holds
     assert below("x", 1.0, 1.0).holds
     assert not above("x", 1.0, 1.0).holds
     assert not any(check.holds for check in (near("x", np.nan, 1.0, 1.0), below("x", np.nan, 1.0)))
@@ -90,22 +82,18 @@ def test_rest_position_and_resonance_decide_their_claims(runs):
     assert verdict(3, runs) == HOLDS
 
 
-def test_laws_that_part_contradict_the_claims_that_they_are_alike(runs):
-    ratio = runs.paper.ds["amplitude_ratio"]
-    ratio[:] = 1.0
-    assert [verdict(number, runs) for number in (5, 9)] == [HOLDS, HOLDS]
-    ratio.loc[{"friction_law": "exponential"}] = 2.0
-    assert [verdict(number, runs) for number in (5, 9)] == [CONTRADICTED, CONTRADICTED]
-
-
-def test_cases_that_have_not_settled_do_not_count_for_the_laws(runs):
+def test_laws_that_part_where_they_have_settled_contradict_the_claims_that_they_are_alike(runs):
     ratio, periodicity = runs.paper.ds["amplitude_ratio"], runs.paper.ds["periodicity"]
     ratio[:] = 1.0
+    assert [verdict(number, runs) for number in (5, 9)] == [HOLDS, HOLDS]
     last = {"friction_law": "exponential", "beta": 3.0}
     ratio.loc[last] = 9.0
     assert verdict(9, runs) == PARTLY
     periodicity.loc[last] = 0.5
     assert verdict(9, runs) == HOLDS
+    ratio.loc[{"friction_law": "exponential"}] = 2.0
+    periodicity[:] = 0.0
+    assert [verdict(number, runs) for number in (5, 9)] == [CONTRADICTED, CONTRADICTED]
 
 
 def test_stick_slip_above_the_last_beta_contradicts(runs):
@@ -157,36 +145,6 @@ def test_frictionless_ratios_and_those_of_mirrored_columns_are_those_of_table_1(
     assert suspension.mirrored_rest(run) == pytest.approx(-0.9342939466)
 
 
-@pytest.mark.acceptance
-def test_single_cases_follow_what_is_changed(runs):
-    run = runs.paper
-    coulomb = single(run, "coulomb", 1.472, 0.05, SETTLED)
-    assert coulomb["amplitude_ratio"] == pytest.approx(0.368, abs=5e-4)
-    static_dynamic = single(run, "static-dynamic", 1.472, 0.05, SETTLED)
-    assert static_dynamic["amplitude_ratio"] == pytest.approx(1.032, abs=1e-3)
-    stuck = single(run, "coulomb", 1.472, 0.04, SETTLED | mirrored_columns(run.config))
-    assert 0.92 < stuck["stick_fraction"] < 0.96
-
-
 def test_a_single_case_that_locks_is_nan(runs):
     locking = {**mirrored_columns(runs.paper.config), "friction": {"dynamic": 0.5}}
     assert np.isnan(single(runs.paper, "coulomb", 1.1, 2.0, locking)["amplitude_ratio"])
-
-
-@pytest.mark.acceptance
-def test_a_real_run_at_20_hz_has_plateaus_of_an_eighth(tmp_path):
-    small = """
-        title = "20 Hz"
-        [sweep]
-        friction_law = "coulomb"
-        frequency_hz = 20.0
-        amplitude_mm = [0.04, 0.045, 0.05]
-        [solver]
-        method = "event-driven"
-        settle_periods = 60
-        """
-    ds = running.Sweep(running.config.parse(small), tmp_path / "20.nc").run(n_jobs=1)
-    assert verdict(13, Runs(*[Run(ds)] * 4)) == HOLDS
-    lengths, inputs, _ = experiment.stops(Run(ds))
-    assert lengths[[0, -1]] == pytest.approx([0.1470 / 2, 0.5827 / 2], abs=0.003)
-    assert 0.045 < experiment.at_plateau(lengths, inputs) < 0.05

@@ -12,28 +12,6 @@ from reproduce.findings import HOLDS, VERDICTS, below
 from tests import fixture_reproduction
 
 
-@pytest.fixture(scope="module")
-def patch():
-    with pytest.MonkeyPatch.context() as made:
-        yield made
-
-
-@pytest.fixture(scope="module")
-def runs(patch):
-    made = fixture_reproduction.build(patch)
-    patch.setattr(reproduction, "obtain", lambda *arguments: made)
-    patch.setattr(reproduction.published, "check", lambda configs: (below("an oscillator", 1.0, 2.0),))
-    return made
-
-
-@pytest.fixture(scope="module")
-def directory(runs, tmp_path_factory):
-    """Directory with the reports of these runs."""
-    made = tmp_path_factory.mktemp("reproduction")
-    reproduction.reproduce(made, 1, lambda line: None, lambda records, total: None, "claims")
-    return made
-
-
 @pytest.mark.acceptance
 def test_recorded_verdicts_decide_the_outcome(runs, monkeypatch, tmp_path):
     monkeypatch.setattr(reproduction, "FIGURES", {})
@@ -69,27 +47,30 @@ def test_the_exit_code_says_whether_all_verdicts_are_as_recorded(monkeypatch):
         assert reproduction.main(["--n-jobs", "1"]) == code
 
 
-def test_the_report_has_every_claim_and_the_figures(directory):
-    content = json.loads((directory / "reproduction.json").read_text())
+@pytest.fixture
+def runs(monkeypatch):
+    made = fixture_reproduction.build(monkeypatch)
+    monkeypatch.setattr(reproduction, "obtain", lambda *arguments: made)
+    monkeypatch.setattr(reproduction.published, "check", lambda configs: (below("an oscillator", 1.0, 2.0),))
+    return made
+
+
+def test_the_report_has_every_claim_with_what_was_found_and_the_figures(runs, tmp_path):
+    reproduction.reproduce(tmp_path, 1, lambda line: None, lambda records, total: None, "claims")
+    content = json.loads((tmp_path / "reproduction.json").read_text(), parse_constant=pytest.fail)  # no nan
     assert sum(content["verdicts"].values()) == 17
-    text = (directory / "reproduction.md").read_text()
+    assert {*content["runs"]} == {"paper", "paper-y0", "breakaway", "paper-unilateral"}
+    text = (tmp_path / "reproduction.md").read_text()
     for claim in content["claims"]:
         assert f"| {claim['number']} | {claim['claim']} | {claim['paper']} |" in text
         assert f"### {claim['number']}. {claim['claim']}: {claim['verdict']}" in text
-    for kind in report.FIGURES:
-        assert (directory / f"paper-{kind}.png").stat().st_size > 10_000
-        assert f"](paper-{kind}.png)" in text
-
-
-def test_the_data_say_of_every_claim_what_was_found_and_hold_no_nan(directory):
-    text = (directory / "reproduction.json").read_text()
-    content = json.loads(text, parse_constant=pytest.fail)
-    for claim in content["claims"]:
         for found in (claim, claim.get("unilateral", claim)):
             assert {found["verdict"], found["recorded"]} <= {*VERDICTS}
             assert found["here"]
             assert all({*each} == {"statement", "here", "criterion", "holds"} for each in found["checks"])
-    assert {*content["runs"]} == {"paper", "paper-y0", "breakaway", "paper-unilateral"}
+    for kind in report.FIGURES:
+        assert (tmp_path / f"paper-{kind}.png").stat().st_size > 10_000
+        assert f"](paper-{kind}.png)" in text
 
 
 TINY = """
@@ -133,18 +114,3 @@ def test_finished_runs_are_kept_and_others_made_again(tmp_path, configs):
     assert "amplitude" in told[2]
     assert "again" in told[2]
     assert changed.breakaway.ds["amplitude"].values.tolist() == [6e-4]
-
-
-@pytest.mark.acceptance
-def test_an_unfinished_run_of_another_version_gives_way(tmp_path, configs):
-    def stop(records, total):
-        if len(records):
-            raise KeyboardInterrupt
-
-    with pytest.raises(KeyboardInterrupt):
-        running.obtain(tmp_path / "out", configs, 1, lambda line: None, stop)
-    assert list((tmp_path / "out").glob("*.partial"))
-    (configs / "paper.toml").write_text(TINY.replace("0.5", "0.6"))
-    runs, told = obtain(tmp_path, configs)
-    assert "running it again" in "".join(told)
-    assert runs.paper.ds["amplitude"].values.tolist() == [6e-4]

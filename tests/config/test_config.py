@@ -115,14 +115,11 @@ def test_resolved_config_reads_back_exactly():
     assert read.solver.duration is None
 
 
-def test_resolved_config_tells_whole_numbers_from_others():
+def test_resolved_config_tells_whole_numbers_from_others_and_its_digest_follows_every_number():
     resolved = tomllib.loads(config.parse(SWEEP.replace("1.0", "1")).to_toml())
     assert isinstance(resolved["solver"]["kept_periods"], int)
     assert isinstance(resolved["sweep"]["beta"][0], float)
     assert config.parse(SWEEP).sha256 == config.parse(SWEEP.replace("1.0", "1")).sha256
-
-
-def test_digest_follows_every_number():
     assert config.parse(SWEEP).sha256 != config.parse(SWEEP.replace("0.1", "0.11")).sha256
 
 

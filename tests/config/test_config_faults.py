@@ -59,25 +59,17 @@ def test_all_faults_are_reported_at_once_with_their_paths():
     [
         ("suspension", "bolster_mass_kg = true", "not a finite number"),
         ("suspension", "bolster_mass_kg = nan", "not a finite number"),
-        ("suspension", "bolster_mass_kg = inf", "not a finite number"),
         ("suspension", f"bolster_mass_kg = 1{'0' * 400}", "out of range"),
-        ("suspension", "bolster_mass_kg = 1979-05-27", "not a finite number"),
         ("suspension", "wedge_angle_deg = 90", "less than 90"),
         ("solver", "rtol = 0.1", "at most 0.01"),
-        ("solver", "rtol = 1e-14", "at least 1e-13"),
         ("solver", "kept_periods = 1", "at least 2"),
         ("solver", "kept_periods = 3.0", "whole number"),
-        ("solver", "kept_periods = true", "not a finite number"),
-        ("solver", "settle_periods = 0", "at least 1"),
         ("solver", "samples_per_period = 33", "multiple of 2"),
-        ("solver", "samples_per_period = 16", "at least 32"),
         ("solver", "duration_s = 0", "greater than 0"),
-        ("solver", "case_timeout_s = -1", "greater than 0"),
         ("solver", 'method = "radua"', '"radau"'),
         ("solver", 'method = ["radau"]', "unknown name"),
         ("suspension", "restitution = 0.5", 'write joints = "unilateral"'),
         ("suspension", 'restitution = 1.0\njoints = "unilateral"', "less than 1"),
-        ("suspension", 'joints = "loose"', "bilateral, unilateral"),
         ("suspension", 'wedge_mass_kg = 0\njoints = "unilateral"', "greater than 0"),
         ("suspension", 'damping = "fixed"', "variable, constant"),
         ("solver", "continuation = true", 'write method = "event-driven" and settle = "steady"'),
@@ -95,20 +87,15 @@ def test_a_value_that_cannot_be_right(table_name, line, hint):
     ("key", "value", "hint"),
     [
         ("beta", "[]", "empty"),
-        ("beta", "[0.1, 0.1]", "repeated"),
         ("beta", "[0.2, 0.1]", "0.1 follows 0.2"),
-        ("beta", '"1"', "not a finite number"),
         ("beta", "[[1]]", "not a finite number"),
         ("beta", "{ start = 1, stop = 2 }", "num: missing; write num = 30"),
-        ("beta", "{ start = 1, stop = 2, num = 0 }", "at least 1"),
         ("beta", "{ start = 1, stop = 2, num = 1 }", "1 increasing values"),
-        ("beta", "{ start = 1, stop = 1, num = 2 }", "2 increasing values"),
         ("beta", "{ start = 2, stop = 1, num = 2 }", "2 increasing values"),
         ("beta", "{ start = 1, stop = 2, num = 2.5 }", "whole number"),
         ("beta", "{ start = 1, stop = 2, nun = 2, num = 2 }", '"num"'),
         ("amplitude_mm", '{ start = 0, stop = 1, num = 2, spacing = "log" }', "greater than 0"),
         ("amplitude_mm", '{ start = 1, stop = 2, num = 2, spacing = "lin" }', '"linear"'),
-        ("amplitude_mm", "0", "greater than 0"),
         ("friction_law", "[]", "empty"),
         ("friction_law", '["coulomb", "coulomb"]', "repeated"),
         ("friction_law", "1", "unknown name"),
@@ -178,16 +165,14 @@ def test_a_whole_that_cannot_be_right(text, told):
     assert problem(text).startswith(f"study.toml: {told}")
 
 
-def test_springs_that_soften_and_still_hold_the_weight():
-    config.parse(SWEEP + "[effects.cubic_stiffness]\ncoefficient_N_per_mm3 = -0.5\n")
-
-
 @pytest.mark.parametrize("sweep", [SWEEP, CASE])
 def test_coulomb_without_lean_is_refused_unless_frictionless(sweep):
     upright = "[suspension]\ncolumn_angle_deg = 0\n"
     assert "friction.dynamic = 0" in problem(upright + sweep)
     config.parse(upright + "[friction]\ndynamic = 0\n" + sweep)
     config.parse(upright + sweep.replace("coulomb", "exponential"))
+    # Springs that soften and still hold the weight.
+    config.parse(sweep + "[effects.cubic_stiffness]\ncoefficient_N_per_mm3 = -0.5\n")
 
 
 def test_a_file_that_cannot_be_read_is_a_config_error(tmp_path):
@@ -196,12 +181,9 @@ def test_a_file_that_cannot_be_read_is_a_config_error(tmp_path):
     for path in (tmp_path / "none.toml", tmp_path, latin):
         with pytest.raises(ConfigError, match=path.name):
             config.load(path)
-
-
-def test_a_byte_order_mark_is_no_fault(tmp_path):
-    path = tmp_path / "windows.toml"
-    path.write_bytes(b"\xef\xbb\xbf" + SWEEP.encode())
-    assert config.load(path) == config.parse(SWEEP)
+    # A byte order mark is no fault.
+    latin.write_bytes(b"\xef\xbb\xbf" + SWEEP.encode())
+    assert config.load(latin) == config.parse(SWEEP)
 
 
 @pytest.mark.parametrize("default", [nan, inf])

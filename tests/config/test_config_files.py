@@ -35,33 +35,19 @@ def test_template_shows_every_key_and_states_the_defaults():
     del expected["solver"]["duration_s"]
     assert {name: read[name] for name in read if name != "sweep"} == expected
     effects = [each for effect in EFFECTS.values() for each in effect.quantities]
+    lines = [line.removeprefix("# ") for line in text.splitlines()]
     for quantity in (*SUSPENSION, *FRICTION, *effects):
-        assert any(
-            line.removeprefix("# ").startswith(f"{quantity.key} = ") and quantity.meaning in line
-            for line in text.splitlines()
-        )
-
-
-def test_template_says_how_to_choose_radau():
-    text = config.template()
+        assert any(line.startswith(f"{quantity.key} = ") and quantity.meaning in line for line in lines)
     radau = text.replace('method = "event-driven"', 'method = "radau"').replace('settle = "steady"', "")
     radau = radau.replace("# settle_periods = 60", "settle_periods = 60")
     assert 'write method = "radau", and settle_periods or duration_s in place of settle' in text
     assert (config.parse(radau).solver.method, config.parse(radau).solver.settle_periods) == ("radau", 60)
-
-
-def test_template_stays_valid_with_its_cases_uncommented():
-    before, after = config.template().split("\n[sweep]\n")
+    # It stays valid with its cases uncommented.
+    before, after = text.split("\n[sweep]\n")
     cases = after[after.index("# [[sweep.case]]") :].split("\n\n")[0].splitlines()
     lines = [line.removeprefix("# ") for line in cases if not line.startswith(OTHERS)]
-    expected = Case("coulomb", 0.4, 1e-3, (("suspension.wedge_angle_deg", 30.0),))
-    assert config.parse(before + "\n" + "\n".join(lines)).case_list() == [expected]
-
-
-@pytest.mark.parametrize("path", CONFIGS, ids=lambda path: path.stem)
-def test_shipped_configs_read_and_read_back(path):
-    read = config.load(path)
-    assert config.parse(read.to_toml()) == read
+    case = Case("coulomb", 0.4, 1e-3, (("suspension.wedge_angle_deg", 30.0),))
+    assert config.parse(before + "\n" + "\n".join(lines)).case_list() == [case]
 
 
 def shipped(name: str) -> config.Config:
@@ -133,9 +119,11 @@ def test_schema_is_json_and_itself_valid():
 
 
 @pytest.mark.parametrize("path", CONFIGS, ids=lambda path: path.stem)
-def test_schema_accepts_shipped_configs_as_written_and_resolved(path):
+def test_shipped_configs_read_and_read_back_and_the_schema_accepts_them(path):
+    read = config.load(path)
+    assert config.parse(read.to_toml()) == read
     assert accepted(tomllib.loads(path.read_text()))
-    assert accepted(config.load(path).document)
+    assert accepted(read.document)
 
 
 @pytest.mark.parametrize(

@@ -3,6 +3,7 @@
 For tests of the machinery only; data from another solver are in tests/validation.
 """
 
+from functools import cache
 from math import pi
 
 import numpy as np
@@ -109,6 +110,13 @@ def searched(data, *effects):
     """Search, base model and the best single fit of each effect."""
     search, base, *_ = base_fit(Search.of(data, effects))
     return search, base, [single_fit(search, effect, base.fit).explanation for effect in effects]
+
+
+@cache
+def lagging():
+    """Search, base model and the fit of the lag in data with one; nobody changes them."""
+    search, base, (lag,) = searched(drawn(LAG), "velocity_lag")
+    return search, base, lag
 
 
 def base_of(data):

@@ -1,6 +1,6 @@
-"""Numbers that lie outside of the range in which they are searched."""
+"""Numbers at the ends of the range in which they are searched, and beyond; their intervals."""
 
-from math import inf, log
+from math import exp, inf, log
 
 import numpy as np
 import pytest
@@ -11,34 +11,45 @@ from wedgesweep.diagnose.beyond_range import effects_at_range_end, followed_beyo
 from wedgesweep.diagnose.explanation import Explanation
 from wedgesweep.diagnose.fit_parameters import Hypothesis
 from wedgesweep.diagnose.least_squares import minimise
-from wedgesweep.diagnose.result.estimates import parameters
+from wedgesweep.diagnose.result.estimates import change, interval, parameters, widen
 from wedgesweep.diagnose.search import Explained, Search, base_fit
 from wedgesweep.diagnose.stages import explain
 from wedgesweep.effects import EFFECTS
 from wedgesweep.natural_units import BENCH
 
 QUANTITIES = [(name, q) for name, effect in EFFECTS.items() for q in effect.quantities if q.search]
-ALL = pytest.mark.parametrize(("name", "quantity"), QUANTITIES, ids=lambda one: getattr(one, "key", one))
 
 
-@ALL
-def test_the_wider_range_holds_the_searched_one_and_only_valid_numbers(name, quantity):
-    (low, high), (lowest, highest) = quantity.search, quantity.wider()
-    assert lowest <= low < high <= highest
-    assert quantity.fault(lowest) is None
-    assert quantity.fault(highest) is None
-    if quantity.logarithmic:
-        assert 0.0 < lowest < low
-    assert np.isfinite([lowest, highest]).all()
+def test_the_wider_range_holds_the_searched_one_and_only_valid_numbers():
+    for name, quantity in QUANTITIES:
+        (low, high), (lowest, highest) = quantity.search, quantity.wider()
+        assert lowest <= low < high <= highest, name
+        assert quantity.fault(lowest) is quantity.fault(highest) is None, name
+        if quantity.logarithmic:
+            assert 0.0 < lowest < low, name
+        assert np.isfinite([lowest, highest]).all(), name
+    # Only effects that are named leave their range.
+    for name in EFFECTS:
+        plain, wider = Hypothesis((name,)), Hypothesis((name,), (), BENCH, (name,))
+        assert Hypothesis((name,), (), BENCH, ("other",)).low.tolist() == plain.low.tolist()
+        assert (wider.scale == plain.scale).all()
+        for each, low, high in zip(wider.parameters, wider.low, wider.high, strict=True):
+            assert (low, high) == ((-inf, inf) if each.angle else each.wider)
 
 
-@pytest.mark.parametrize("name", EFFECTS)
-def test_only_named_effects_leave_their_range(name):
-    plain, wider = Hypothesis((name,)), Hypothesis((name,), (), BENCH, (name,))
-    assert Hypothesis((name,), (), BENCH, ("other",)).low.tolist() == plain.low.tolist()
-    assert (wider.scale == plain.scale).all()
-    for each, low, high in zip(wider.parameters, wider.low, wider.high, strict=True):
-        assert (low, high) == ((-inf, inf) if each.angle else each.wider)
+def test_intervals_are_symmetric_in_the_coordinate_of_the_fit_and_no_wider_than_the_range():
+    for name, quantity in QUANTITIES:
+        low, high = quantity.search
+        ends = interval(quantity, low + 0.3 * (high - low), 1e6, quantity.search)
+        assert ends[1] - ends[0] == pytest.approx(high - low), name
+        value = low + 0.5 * (high - low)
+        ends = interval(quantity, value, 1e-3, quantity.search)
+        assert [change(quantity, value, end) for end in ends] == pytest.approx([-1e-3, 1e-3]), name
+    stiffness = dict(QUANTITIES)["column_compliance"]
+    assert interval(stiffness, 60.0, log(2.0), stiffness.search) == pytest.approx((30.0, 120.0))
+    assert change(stiffness, 60.0, 60.0 * exp(0.1)) == pytest.approx(0.1)
+    angle = next(q for _, q in QUANTITIES if q.angle)
+    assert change(angle, 179.0, -179.0) == pytest.approx(2.0)
 
 
 def friction_of(scale):
@@ -98,3 +109,10 @@ def test_a_logarithm_ends_at_either_end_of_its_range():
         x = np.array([log(value), *(0.5 * (model.low + model.high))[1:]])
         fit = minimise(model, model.evaluate(model.start(None, x)), 0)
         assert (effects_at_range_end(fit) == ("column_compliance",)) is ends
+
+
+def test_the_interval_of_a_cause_holds_those_that_other_explanations_find():
+    own, others = {"preload": {"force_N": {"value": 2.0, "ci95": [1.9, 2.1]}}}, {"stribeck": {}}
+    for low, high in (1.7, 1.8), (2.0, 2.3):
+        widen(own, others | {"preload": {"force_N": {"value": low, "ci95": [low, high]}}})
+    assert own["preload"]["force_N"] == {"value": 2.0, "ci95": [1.7, 2.3]}

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.diagnose.synthetic import LAG, base_of, drawn, searched
+from tests.diagnose.synthetic import base_of, drawn, lagging
 from tests.diagnose.test_aliasing import bench
 from wedgesweep.diagnose import calibration, verdict
 from wedgesweep.diagnose.calibration import calibrate
@@ -48,7 +48,7 @@ def test_a_cause_that_is_found_again_is_strong_however_small(tried, again, stron
     monkeypatch.setattr(calibration, "SAMPLES", 3)
     monkeypatch.setattr(calibration, "explain", explain)
     messages = []
-    search, base, (lag,) = searched(drawn(LAG), "velocity_lag")
+    search, base, lag = lagging()
     found = calibrate(replace(search, progress=messages.append), base, lag)
     assert (found.found, found.thresholds.strong) == (again, strong)
     # A number costs more than noise gives.

@@ -82,20 +82,6 @@ def place(tmp_path_factory):
     return folder / "made" / "measured.toml"
 
 
-@pytest.mark.acceptance
-def test_the_load_tells_preload_from_friction_where_the_motion_does_not(place):
-    data = harmonic_data(measured.read(place))
-    assert data.observations.tolist() == [4 * 16 + 2 * 16 + 1] * 4
-    effects = ("preload", "friction_level")
-    _, base, (preload, friction) = searched(data, *effects)
-    assert base.fit.p < 1e-6 < 0.01 < preload.fit.p
-    assert preload.fit.x == pytest.approx([0.05], abs=0.01)
-    assert friction.fit.chi2 - preload.fit.chi2 > 100.0
-    _, base, (preload, friction) = searched(replace(data, loads=()), *effects)
-    assert base.fit.p < 1e-6
-    assert abs(friction.fit.chi2 - preload.fit.chi2) < 10.0
-
-
 def test_the_zero_of_the_load_cell_only_counts_as_far_as_it_is_known(place):
     data = harmonic_data(measured.read(place))
     here = data.compare([stated(data)], 1e-6)[0].residual

@@ -1,11 +1,14 @@
-"""Gain on tests that a fit has not seen: all of it where the cause is right, none where there is none."""
+"""Gain on tests that a fit has not seen; effects are added one at a time until these tests end it."""
 
 import numpy as np
 import pytest
 
-from tests.diagnose.synthetic import LAG, base_of, drawn, searched
+from tests.diagnose.synthetic import LAG, base_of, drawn, lagging, searched
 from wedgesweep.diagnose import accuracy, cross_validation
 from wedgesweep.diagnose.cross_validation import Gain, Predictor
+from wedgesweep.diagnose.explanation import Explanation
+from wedgesweep.diagnose.ladder import forward_selection, ladder
+from wedgesweep.diagnose.least_squares import minimise
 from wedgesweep.diagnose.steady import harmonic_data, tone
 
 POINTS = 32
@@ -22,7 +25,7 @@ def gain_of(squares):
 
 
 def test_gain_on_held_out_tests_reaches_the_noise():
-    _, base, (lag,) = searched(drawn(LAG), "velocity_lag")
+    _, base, lag = lagging()
     measured = cross_validation.cross_validate(base.fit, lag.fit, Predictor(serial))
     assert set(measured.schemes) == {"frequency", "amplitude"}
     assert measured.excess_removed > 0.95
@@ -129,3 +132,42 @@ def test_a_fine_sweep_is_no_single_group():
     assert sorted(np.concatenate(found).tolist()) == list(range(frequencies.size))
     assert max(np.ptp(np.log(frequencies[::-1][group])) for group in found) <= tone.SAME
     assert len(found) > 5
+
+
+CANDIDATES = ("velocity_lag", "displacement_gain", "bolster_mass", "bolster_stiffness")
+TWO = {**LAG, "displacement_gain": {"scale": 1.04}}
+THREE = {**TWO, "bolster_mass": {"scale": 1.05}}
+
+
+def levels_after(hidden, pair):
+    """Levels before and after the selection, from the fit of a pair of effects."""
+    search, base, singles = searched(drawn(hidden, std=1e-3, level=0.01), *CANDIDATES)
+    known = {each.effects[0]: each.fit for each in singles}
+    model = search.model(*pair)
+    start = model.start(base.fit, [known[name].x[0] for name in pair])
+    both = Explanation(minimise(model, model.evaluate(start)))
+    predict = Predictor(search.each)
+    before = ladder(search, base, [*singles, both], predict)
+    return before, forward_selection(search, singles, before, predict)
+
+
+@pytest.mark.acceptance
+def test_the_third_of_three_effects_is_added_and_no_fourth():
+    before, after = levels_after(THREE, ("velocity_lag", "bolster_mass"))
+    assert [len(level.best.effects) for level in after] == [0, 1, 2, 3]
+    assert after[:3] == before
+    assert set(after[3].best.effects) == set(THREE)
+    assert after[3].best.accuracy == 0.0
+    assert after[3].best.held_out < 0.5 * before[2].best.held_out
+
+
+@pytest.mark.acceptance
+def test_nothing_is_added_to_the_whole_truth():
+    before, after = levels_after(TWO, tuple(TWO))
+    assert after == before
+
+
+@pytest.mark.acceptance
+def test_a_pair_that_predicts_no_better_than_one_effect_is_no_ground_to_build_on():
+    before, after = levels_after(LAG, ("velocity_lag", "bolster_mass"))
+    assert after == before

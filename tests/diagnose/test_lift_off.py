@@ -1,4 +1,4 @@
-"""Joints that lift off, hidden in loud tests and found; and told where tests cannot show them."""
+"""Joints that lift off or jam, hidden in tests and found; and told where tests cannot show them."""
 
 import numpy as np
 import pytest
@@ -33,8 +33,8 @@ def decided(data):
 
 
 @pytest.mark.acceptance
-@pytest.mark.parametrize(("law", "restitution"), [("static-dynamic", 0.0), ("coulomb", 0.4)])
-def test_it_is_named_with_its_restitution(law, restitution):
+def test_it_is_named_with_its_restitution():
+    law, restitution = "coulomb", 0.4
     finding, _ = decided(measured(law, {NAME: {"restitution": restitution}}))
     assert finding.verdict == verdict.NAMED
     assert finding.best.effects == (NAME,)
@@ -112,3 +112,23 @@ def test_an_effect_is_the_same_as_the_joints_of_the_config():
     assert as_effect.record(case) == as_joints.record(case)
     with pytest.raises(config.ConfigError, match=r"effects\.lift_off: .* says the same"):
         config.parse(MODEL + '[suspension]\njoints = "unilateral"\n[effects.lift_off]\n')
+
+
+# Frequencies (Hz), and amplitudes (m) of base accelerations of 0.9 to 2.4 m/s2: all break away.
+FREQUENCIES = np.array([8.0, 12.0, 16.0, 20.0, 24.0, 30.0])
+AMPLITUDES = np.array([0.9, 1.1, 1.3, 1.6, 2.0, 2.4]) / (2.0 * np.pi * FREQUENCIES) ** 2
+
+
+@pytest.mark.acceptance
+@pytest.mark.parametrize("locked_in", [0.5])
+def test_it_is_named_with_its_share(locked_in):
+    hidden = {"jamming": {"locked_in": locked_in}}
+    model = MODEL.replace("static-dynamic", "coulomb")
+    data = drawn(hidden, bench=(FREQUENCIES, AMPLITUDES), law="coulomb", model=model, std=0.005)
+    candidates = ("jamming", "friction_level", "guide_friction", "stribeck")
+    _, base, explanations, _ = explain(Search.of(data, candidates))
+    finding = verdict.decide(base, explanations, verdict.thresholds_for(data))
+    assert finding.verdict == verdict.NAMED
+    assert finding.best.effects == ("jamming",)
+    low, high = parameters(finding.best.fit)["jamming"]["locked_in"]["ci95"]
+    assert low <= locked_in <= high

@@ -104,7 +104,6 @@ def toml_of(tests):
     ("effect", "hidden", "recorded", "tests"),
     [
         ("directional_damping", {"coefficient_N_s_per_m": 6.0, "asymmetry": -0.7}, True, TESTS),
-        ("backlash", {"clearance_mm": 0.2}, True, TESTS),
         ("damper_play", {"clearance_mm": 0.0002}, False, MOSTLY_SLIGHT),
         ("series_compliance", {"stiffness_N_per_mm": 3.0, "coefficient_N_s_per_m": 4.0}, True, TESTS),
     ],

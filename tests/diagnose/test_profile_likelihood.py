@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from tests.diagnose.synthetic import LAG, drawn, searched
+from tests.diagnose.synthetic import drawn, lagging, searched
 from wedgesweep.diagnose import profile_likelihood as profile
 from wedgesweep.diagnose.least_squares import minimise, tight_refit
 from wedgesweep.diagnose.model import Model
@@ -23,23 +23,20 @@ def std(fit):
 
 @pytest.fixture(scope="module")
 def lag():
-    _, _, (single,) = searched(drawn(LAG), "velocity_lag")
+    *_, single = lagging()
     return tight_refit(single.fit)
 
 
-def test_the_interval_of_a_parabola_is_that_of_its_curvature(lag):
+def test_an_interval_widens_to_the_rise_of_chi2_and_is_no_narrower_than_by_the_curvature(lag):
     assert std(profile_likelihood(lag, serial)) == pytest.approx(std(lag), rel=0.05)
-
-
-def test_an_interval_that_is_too_narrow_widens_to_the_rise_of_chi2(lag):
-    """As derivatives across a jump make it."""
+    # As derivatives across a jump make it.
     certain = replace(lag, covariance=lag.covariance / 50.0**2)
     assert std(profile_likelihood(certain, serial)) == pytest.approx(std(lag), rel=0.2)
-
-
-def test_an_interval_is_no_narrower_than_by_the_curvature(lag):
     wide = replace(lag, covariance=9.0 * lag.covariance)
     np.testing.assert_array_equal(std(profile_likelihood(wide, serial)), std(wide))
+    # What has no steady response has no profile.
+    lost = replace(lag, evaluation=replace(lag.evaluation, found_tests=np.zeros(lag.model.data.tests, bool)))
+    np.testing.assert_array_equal(std(profile_likelihood(lost, serial)), std(lost))
 
 
 def test_a_fit_that_stopped_short_continues_to_the_minimum(lag):
@@ -104,11 +101,6 @@ def test_no_number_is_tried_beyond_its_bound(monkeypatch):
     assert (std(found) >= std(fit)).all()
 
 
-def test_what_has_no_steady_response_has_no_profile(lag):
-    lost = replace(lag, evaluation=replace(lag.evaluation, found_tests=np.zeros(lag.model.data.tests, bool)))
-    np.testing.assert_array_equal(std(profile_likelihood(lost, serial)), std(lost))
-
-
 def end_of_a_switch(monkeypatch, std, rise, value=0.1):
     """Upper end of the interval of a number in 0 to 1, by the rise of chi-squared, and what was tried."""
     tried = []
@@ -130,9 +122,7 @@ def test_an_interval_contains_ridges_behind_which_the_fit_is_nearly_as_good(monk
     end, tried = end_of_a_switch(monkeypatch, 0.01, lambda x: 1.0 if 0.2 < x < 0.3 else 3.0 * RISE)
     assert 0.3 < end < 0.6
     assert max(tried) == pytest.approx(1.0)
-
-
-def test_nothing_is_tried_far_beyond_an_interval(monkeypatch):
+    # Nothing is tried far beyond it.
     end, tried = end_of_a_switch(monkeypatch, 0.01, lambda x: RISE * (x / 0.11) ** 8)
     assert end == pytest.approx(0.1196, abs=1e-3)
     assert len(tried) == 3

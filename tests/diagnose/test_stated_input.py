@@ -10,7 +10,6 @@ from tests.diagnose.synthetic import drawn, measurement, record
 from tests.diagnose.test_oscillator_data import FREQUENCY, C, K, M, model
 from wedgesweep import config
 from wedgesweep.diagnose import verdict
-from wedgesweep.diagnose.diagnosis import diagnose
 from wedgesweep.diagnose.fit_parameters import Hypothesis
 from wedgesweep.diagnose.model import Model
 from wedgesweep.diagnose.search import Search
@@ -200,9 +199,3 @@ def test_a_model_that_distorts_is_distorted_further():
     both = 0.01 * np.exp(1j * np.radians(30.0)) + 0.01
     assert moved["second"] == pytest.approx(abs(both))
     assert moved["second_phase"] == pytest.approx(np.angle(both))
-
-
-@pytest.mark.acceptance
-def test_a_whole_diagnosis_of_distorted_tests_finds_nothing_missing():
-    found = diagnose(frictionless(7, distorted=True), ("input_distortion", "viscous_damping"))
-    assert found.finding.verdict == verdict.NOTHING

@@ -58,33 +58,22 @@ def failed(bench):
 
 
 def test_steps_that_fail_leave_their_place_empty(failed):
-    found, _ = failed
+    found, seen = failed
     assert steps_of(found, "ZeroDivisionError: by nothing") == [
         *("pairs", "intervals", "held-out tests", "accuracy", "next test")
     ]
     assert steps_of(found, "ValueError: no matrix") == ["scores"]
     assert found.document["ended"] is None
     assert (found.document["next_test"], found.document["gain"]["scheme"]) == (None, None)
-
-
-def test_the_ladder_of_single_effects_is_told_before_later_steps_begin(failed):
-    found, seen = failed
+    # The ladder of single effects is told before later steps begin.
     assert [len(each.ladder) for each in seen] == [1] + [2] * (len(seen) - 1)
     assert sorted(found.document["ladder"][1]["effects"]) in [[one] for one in CANDIDATES]
     assert all(each["accuracy"] > 0.0 for each in found.document["ladder"])
-
-
-def test_a_verdict_without_pairs_does_not_say_that_none_explains(failed):
-    found, _ = failed
+    # Without pairs it is not said that none explains.
     assert (found.verdict, found.causes) == ("data-insufficient", [])
     told = report.sentence_of(found)
     assert "pairs, intervals, held-out tests, accuracy and next test (ZeroDivisionError: by nothing)" in told
     assert "none of the" not in told
-
-
-@pytest.mark.acceptance
-def test_the_report_shows_what_there_is(failed):
-    found, _ = failed
     assert "ZeroDivisionError: by nothing" in render(found)
 
 
@@ -149,13 +138,15 @@ def test_pairs_end_when_half_of_the_time_is_used_and_the_rest_is_done(bench, mon
     assert found.gain is not None
 
 
-def test_the_command_ends_with_its_own_exit_code(tmp_path):
+def test_out_of_time_the_command_ends_with_an_exit_code_of_its_own(tmp_path):
     options = ("--effects", ",".join(CANDIDATES), "--no-report", "-o", tmp_path / "found")
     told = invoke("diagnose", BENCH, *options, "--time-limit", "0.001s", code=3)
     assert "test-09.csv: noise" in told
     assert "base model: error 17.1 times the noise\n" in told.replace("\u00a0", " ")
     assert "(time limit)" in told
     assert diagnosis_result.read(tmp_path / "found").document["ended"]["by"] == "time limit"
+    for given in ("60", "-1s", "0s", "1 day", "nans", "infs", "s"):
+        assert "is not a time such as 60s" in invoke("diagnose", BENCH, "--time-limit", given, code=2)
 
 
 def test_a_report_that_fails_does_not_take_the_result_with_it(failed, tmp_path, monkeypatch):
@@ -165,11 +156,6 @@ def test_a_report_that_fails_does_not_take_the_result_with_it(failed, tmp_path, 
     assert "no report (ZeroDivisionError: by nothing)" in told
     assert told.endswith(f"wrote {tmp_path / 'found'}\n")
     assert diagnosis_result.read(tmp_path / "found").document == failed[0].document
-
-
-@pytest.mark.parametrize("given", ["60", "-1s", "0s", "1 day", "nans", "infs", "s"])
-def test_a_time_limit_has_a_unit(given):
-    assert "is not a time such as 60s" in invoke("diagnose", BENCH, "--time-limit", given, code=2)
 
 
 @pytest.mark.acceptance

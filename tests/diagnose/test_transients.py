@@ -93,7 +93,6 @@ HIDDEN = {
     ("effect", "candidates"),
     [
         ("friction_level", ["friction_level", "bolster_stiffness"]),
-        pytest.param("viscous_damping", [*HIDDEN], marks=pytest.mark.acceptance),
         pytest.param("presliding", [*HIDDEN], marks=pytest.mark.acceptance),
     ],
 )
@@ -101,18 +100,6 @@ def test_a_hidden_effect_is_found(tmp_path, effect, candidates):
     found = diagnosed(write(tmp_path, effects={effect: HIDDEN[effect]}), candidates)
     assert found.gain["excess_removed"] > 0.95
     is_told(found, {effect: HIDDEN[effect]}, 0.02)
-
-
-@pytest.mark.acceptance
-def test_without_a_candidate_the_base_model_is_all_there_is(tmp_path):
-    path = write(tmp_path, effects={"viscous_damping": {"coefficient": 20.0}})
-    found = diagnosed(path, ["cross_slip"])  # of a sine as the input
-    assert (found.verdict, found.causes) == ("none-of-mine", [])
-
-
-@pytest.mark.acceptance
-def test_nothing_is_missing_where_nothing_is(tmp_path):
-    assert diagnosed(write(tmp_path), ["viscous_damping", "friction_level"]).verdict == "nothing-missing"
 
 
 # Far enough from rest for wedges to lift off; the windows of a record of their own each.

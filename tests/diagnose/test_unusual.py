@@ -10,6 +10,7 @@ from tests.command import invoke
 from tests.diagnose.synthetic import drawn
 from wedgesweep import config
 from wedgesweep import measured as measurements
+from wedgesweep.diagnose.diagnosis import excluded_effects
 from wedgesweep.diagnose.evaluation import Point, Scenario
 from wedgesweep.diagnose.steady import simulation
 from wedgesweep.diagnose.steady.from_measurement import harmonic_data
@@ -96,23 +97,17 @@ def test_a_model_with_effects_repeated_tests_and_one_that_sticks(measured):
 
 
 def test_a_tone_that_the_model_has_is_not_looked_for(measured):
-    """These data have none."""
-    table = "[effects.stray_vibration]\nacceleration_m_per_s2 = 0.01\nfrequency_hz = 17.3\n"
-    assert harmonic_data(measurements.read(measured)).tone is None
-    (measured.parent / "model.toml").write_text(MODEL + table)
-    fit_data = harmonic_data(measurements.read(measured))
-    assert (fit_data.tone, fit_data.tone_std) == (17.3, 0.0)
-
-
-@pytest.mark.acceptance
-def test_what_the_model_has_switched_off_is_a_candidate_still(measured):
-    silent = "[effects.stray_vibration]\nacceleration_m_per_s2 = 0.0\nfrequency_hz = 17.3\n"
-    (measured.parent / "model.toml").write_text(f"{MODEL}{silent}[effects.guide_friction]\n")
-    assert harmonic_data(measurements.read(measured)).tone is None
-    out = measured.parent / "found"
-    said = invoke("diagnose", measured, "-o", out, "--no-report", "--effects", "preload,guide_friction")
-    assert "no candidate: preload is part of the model already" in said
-    assert ["guide_friction"] in [each["effects"] for each in read(out).document["candidates"]]
+    """These data have none; what the model has switched off is a candidate still."""
+    table = "[effects.stray_vibration]\nacceleration_m_per_s2 = {}\nfrequency_hz = 17.3\n"
+    silent = MODEL + table.format(0.0) + "[effects.guide_friction]\n"
+    for model, tone in ((MODEL, None), (silent, None), (MODEL + table.format(0.01), 17.3)):
+        (measured.parent / "model.toml").write_text(model)
+        found = measurements.read(measured)
+        assert harmonic_data(found).tone == tone
+        excluded = excluded_effects(found)
+        assert "preload" in excluded
+        assert "guide_friction" not in excluded
+    assert harmonic_data(found).tone_std == 0.0
 
 
 def test_a_place_that_cannot_be_written_to_is_told_at_once(measured):

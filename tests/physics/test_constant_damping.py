@@ -152,7 +152,7 @@ def solved(solve, case, settle):
     return response.evaluate(solve(case, window, 1e-9, inf), case, harmonics=9).numbers
 
 
-@pytest.mark.few(1)
+@pytest.mark.acceptance
 @pytest.mark.parametrize("law", LAW_NAMES)
 @pytest.mark.parametrize(
     ("joints", "amplitude", "beta"), [("bilateral", 1e-3, 0.6), ("unilateral", 2e-3, 0.8)]

@@ -90,7 +90,7 @@ def check(record, generator):
 @pytest.mark.few(3)
 @pytest.mark.parametrize(("law", "lean"), list(product(LAW_NAMES, LEANS)))
 def test_forces_solve_newtons_equations_with_exactly_one_pair_of_signs(law, lean):
-    for record, t, y in random_states(law, lean, 450):
+    for record, t, y in random_states(law, lean, 150):
         p, small = with_all_mechanics(record)[0], parameters.compact(record)[0]
         s = p["suspension"]
         mode, unique = mechanics.initial_mode(t, y, small)
@@ -133,11 +133,7 @@ def test_laws_are_odd_bounded_and_passive(law):
         value = mechanics.coefficient(velocity, branch, y, p)
         assert value == -mechanics.coefficient(-velocity, -branch, y, p)
         assert 0.0 < value <= max(p["friction"]["mu_s"], p["friction"]["mu_d"])
-
-
-def test_laws_jump_from_static_to_dynamic_at_the_threshold():
-    for law in ("static-dynamic", "exponential"):
-        p, y = parameters.compact(parameters.record(law, 1e-3, 1.0))[0], (0.0, 0.0)
+    if not p["friction"]["set_valued"]:  # they jump from static to dynamic at the threshold
         threshold = p["friction"]["v_t"]
         assert mechanics.coefficient(threshold, 0, y, p) == pytest.approx(p["friction"]["mu_s"])
         assert mechanics.coefficient(threshold, 1, y, p) == pytest.approx(p["friction"]["mu_d"])

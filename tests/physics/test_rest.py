@@ -73,6 +73,10 @@ def by_programme(row, mu):
 @pytest.mark.parametrize(("column_angle", "interval"), LEANS)
 def test_reference_machines(column_angle, interval):
     assert np.ravel(rest_interval(machine(column_angle), 0.29)) == pytest.approx(interval, abs=1e-6)
+    # The least sticking is within the band, and without friction there is none.
+    up, down = np.ravel(breakaway_inputs(machine(column_angle), 0.29))
+    assert interval[0] - 1e-6 < up < 0.0 < down < interval[1] + 1e-6
+    assert np.ravel(rest_interval(machine(column_angle), 0.0)) == pytest.approx([0.0, 0.0], abs=1e-12)
 
 
 def test_interval_is_that_of_a_linear_programme():
@@ -85,17 +89,6 @@ def test_interval_is_that_of_a_linear_programme():
     assert len(rows) > 0.9 * count
     assert np.isinf(expected).any()
     assert intervals == pytest.approx(expected, rel=1e-9, abs=1e-9, nan_ok=True)
-
-
-@pytest.mark.parametrize(("column_angle", "interval"), LEANS)
-def test_least_sticking_is_within_the_band(column_angle, interval):
-    up, down = np.ravel(breakaway_inputs(machine(column_angle), 0.29))
-    assert interval[0] - 1e-6 < up < 0.0 < down < interval[1] + 1e-6
-
-
-def test_no_friction_no_band():
-    lowest, highest = rest_interval(machine(4.0), 0.0)
-    assert (lowest[0], highest[0]) == pytest.approx((0.0, 0.0), abs=1e-12)
 
 
 @pytest.mark.parametrize("locked_in", [0.0, 0.5, 1.0])

@@ -1,5 +1,6 @@
 """Any number of the model as an axis: one dimension each, cases known by their numbers, sweeps that grow."""
 
+import shutil
 from datetime import UTC, datetime
 from itertools import product
 
@@ -57,8 +58,23 @@ def fixed(wedge: float, dynamic: float, mass: float = 0.7) -> xr.Dataset:
     return Sweep(config.parse("[suspension]\n" + numbers + SWEEP + SOLVER), None).run_here()
 
 
-def test_each_axis_is_a_dimension_with_units_and_values_are_those_of_single_configs(tmp_path):
-    ds = sweep(tmp_path).run(n_jobs=1)
+@pytest.fixture(scope="module")
+def angles(tmp_path_factory) -> Sweep:
+    """The sweep of three numbers of friction and two angles, run once; others get a copy of its file."""
+    made = sweep(tmp_path_factory.mktemp("angles"))
+    made.run(n_jobs=1)
+    return made
+
+
+@pytest.fixture
+def copied(angles, tmp_path):
+    """A folder with the dataset of ``angles``."""
+    shutil.copy(angles.out, tmp_path)
+    return tmp_path
+
+
+def test_each_axis_is_a_dimension_with_units_and_values_are_those_of_single_configs(angles):
+    ds = xr.load_dataset(angles.out)
     assert ds["amplitude_ratio"].dims == (
         *("friction_law", "wedge_angle_deg", "friction_dynamic"),
         *("frequency", "amplitude"),
@@ -70,7 +86,7 @@ def test_each_axis_is_a_dimension_with_units_and_values_are_those_of_single_conf
         alone = fixed(wedge, dynamic)
         assert here["amplitude_ratio"].values.tolist() == alone["amplitude_ratio"].values.tolist()
         assert here["frequency"].values.tolist() == alone["frequency"].values.tolist()
-    assert dataset.read_sweep(tmp_path / "axes.nc")["status"].shape == (1, 2, 3, 2, 1)
+    assert dataset.read_sweep(angles.out)["status"].shape == (1, 2, 3, 2, 1)
 
 
 def test_frequencies_in_hertz_are_common_where_omega_n_varies(tmp_path):
@@ -109,27 +125,15 @@ zip = ["suspension.bolster_mass_kg", "suspension.bolster_spring_N_per_mm"]
 
 
 def test_listed_cases_have_numbers_too(tmp_path):
-    listed = """
-[[sweep.case]]
-friction_law = "coulomb"
-frequency_hz = 20.0
-amplitude_mm = 0.3
-suspension.wedge_angle_deg = 30.0
-[[sweep.case]]
-friction_law = "coulomb"
-frequency_hz = 10.0
-amplitude_mm = 0.3
-"suspension.wedge_angle_deg" = 37.5
-"""
+    """Also those that have no default, if all cases give them."""
+    case = '[[sweep.case]]\nfriction_law = "coulomb"\nfrequency_hz = {}\namplitude_mm = 0.3\n{}\n'
+    listed = case.format(20.0, "suspension.wedge_angle_deg = 30.0")
+    listed += case.format(10.0, '"suspension.wedge_angle_deg" = 37.5')
     ds = Sweep(config.parse(listed + SOLVER), tmp_path / "listed.nc").run(n_jobs=1)
     assert ds["wedge_angle_deg"].dims == ("case",)
     expected = [fixed(30.0, 0.29).isel(beta=1), fixed(37.5, 0.29).isel(beta=0)]
     assert ds["amplitude_ratio"].values.tolist() == [each["amplitude_ratio"].item() for each in expected]
-
-
-def test_listed_cases_may_all_give_what_has_no_default():
-    case = '[[sweep.case]]\nfriction_law = "coulomb"\nbeta = 1.0\namplitude_mm = 0.3\n'
-    read = config.parse(f"{case}suspension.locked_in = 0.5\n{case}suspension.locked_in = 1.0\n")
+    read = config.parse("".join(case.format(1.0, f"suspension.locked_in = {each}") for each in (0.5, 1.0)))
     assert read.case_coordinates()["locked_in"][1].tolist() == [0.5, 1.0]
 
 
@@ -160,23 +164,17 @@ def test_wrong_axes_are_named(axes, words):
     assert words in fault
 
 
-def test_a_longer_axis_computes_new_cases_only(tmp_path):
-    sweep(tmp_path).run(n_jobs=1)
-    small = xr.load_dataset(tmp_path / "axes.nc")
-    grown = sweep(tmp_path, ANGLES.replace("37.5]", "33.0, 37.5]"))
-    grown = Sweep(
-        config.parse(grown.config.to_toml().replace("[30.0, 33.0, 37.5]", "[30.0, 37.5, 40.0]")), grown.out
-    )
+def test_a_longer_axis_computes_new_cases_only(copied):
+    small = xr.load_dataset(copied / "axes.nc")
+    grown = sweep(copied, ANGLES.replace("37.5]", "37.5, 40.0]"))
     assert grown.stored() is None
     assert len(solved(grown)) == 6
-    ds = xr.load_dataset(tmp_path / "axes.nc")
+    ds = xr.load_dataset(copied / "axes.nc")
     kept = ds.sel(wedge_angle_deg=[30.0, 37.5])
     for name in small.data_vars:
-        assert np.array_equal(
-            kept[name].values, small[name].values, equal_nan=small[name].dtype.kind == "f"
-        ), name
-    fresh = Sweep(grown.config, tmp_path / "fresh.nc").run(n_jobs=1)
-    small_sweep.assert_same_numbers(ds, fresh)
+        is_float = small[name].dtype.kind == "f"
+        assert np.array_equal(kept[name].values, small[name].values, equal_nan=is_float), name
+    small_sweep.assert_same_numbers(ds, Sweep(grown.config, None).run_here())
 
 
 def test_an_axis_added_to_a_plain_sweep_reuses_its_cases(tmp_path):
@@ -196,35 +194,20 @@ def test_an_interrupted_sweep_grows_and_resumes(tmp_path):
     small_sweep.assert_same_numbers(xr.load_dataset(tmp_path / "axes.nc"), fresh)
 
 
-def test_a_changed_model_never_reuses_a_case(tmp_path):
-    sweep(tmp_path).run(n_jobs=1)
-    changed = Sweep(
-        config.parse("[friction]\nstatic = 0.4\n" + SWEEP + ANGLES + SOLVER), tmp_path / "axes.nc"
-    )
-    with pytest.raises(MismatchError):
-        changed.stored()
-    before = (tmp_path / "axes.nc").read_bytes()
-    with pytest.raises(MismatchError):
-        changed.run(n_jobs=1)
-    assert (tmp_path / "axes.nc").read_bytes() == before
-
-
-def test_a_sweep_that_shrinks_or_is_solved_otherwise_discards_nothing(tmp_path):
-    made = sweep(tmp_path)
-    made.run(n_jobs=1)
-    fewer = sweep(tmp_path, ANGLES.replace(", 0.3]", "]"))
-    finer = Sweep(config.parse(SWEEP + ANGLES + SOLVER + "rtol = 1e-8\n"), made.out)
-    for other in (fewer, finer):
+def test_another_sweep_never_reuses_a_case_and_discards_nothing_and_a_new_title_does_neither(copied):
+    path, text = copied / "axes.nc", SWEEP + ANGLES + SOLVER
+    before = path.read_bytes()
+    changed = "[friction]\nstatic = 0.4\n" + text
+    for other in (changed, text.replace(", 0.3]", "]"), text + "rtol = 1e-8\n"):
         with pytest.raises(MismatchError, match="there"):
-            other.stored()
-
-
-def test_a_new_title_neither_refuses_nor_runs_anything(tmp_path):
-    sweep(tmp_path).run(n_jobs=1)
-    renamed = Sweep(config.parse('title = "new"\n' + SWEEP + ANGLES + SOLVER), tmp_path / "axes.nc")
+            Sweep(config.parse(other), path).stored()
+    with pytest.raises(MismatchError):
+        Sweep(config.parse(changed), path).run(n_jobs=1)
+    assert path.read_bytes() == before
+    renamed = Sweep(config.parse('title = "new"\n' + text), path)
     assert renamed.stored() is None
     assert solved(renamed) == []
-    assert xr.load_dataset(tmp_path / "axes.nc").attrs["title"] == "new"
+    assert xr.load_dataset(path).attrs["title"] == "new"
 
 
 def test_rows_of_a_continuation_are_reused_whole_or_not_at_all(tmp_path):
@@ -275,8 +258,8 @@ def test_both_ends_of_breakaway_are_told_along_the_axes_that_change_them():
         assert values[1].isnull().all()  # a regularised law creeps at any input
 
 
-def test_figures_draw_any_axes_and_pick_the_rest(tmp_path):
-    ds = sweep(tmp_path).run(n_jobs=1)
+def test_figures_draw_any_axes_and_pick_the_rest(angles):
+    ds = xr.load_dataset(angles.out)
     drawn = figures.draw(ds, "map", x="suspension.wedge_angle_deg", y="friction_dynamic", facet="frequency")
     titles = [ax.get_title() for ax in drawn.axes]
     assert titles[:2] == ["frequency 10 Hz", "frequency 20 Hz"]

@@ -179,10 +179,13 @@ def records(draw):
     )
 
 
-def test_a_regularised_law_without_friction_has_numbers():
+def test_without_friction_there_are_numbers():
+    frictionless = {"dynamic": 0.0, "static": 0.0}
+    upright = {"column_angle": np.radians(0.1)}
+    record = parameters.record("coulomb", 1e-3, 42.5, upright, frictionless)
+    assert STATUSES[solved(record)["status"]] == "ok"
     suspension = {"column_angle": 0.0978704313781991}
     omega, amplitude = 195.35324097317206, 7.227765780030118e-05  # a face turns back just at v_t
-    frictionless = {"dynamic": 0.0, "static": 0.0}
     record = parameters.record("static-dynamic", amplitude, omega, suspension, frictionless)
     found = solved(record, replace(SHORT, steady=True, settle_periods=None, max_periods=30))
     assert found["dissipated_energy"] == 0.0
@@ -220,10 +223,3 @@ def test_ends_with_numbers_that_can_be_or_with_a_reason(record, steady):
     assert found["dissipated_energy"] >= 0.0
     assert found["peak_velocity"] >= 0.0
     assert np.isnan(found["lift_off_fraction"]) or 0.0 <= found["lift_off_fraction"] <= 1.0
-
-
-def test_coulomb_without_friction():
-    friction = {"dynamic": 0.0, "static": 0.0}
-    suspension = {"column_angle": np.radians(0.1)}
-    record = parameters.record("coulomb", 1e-3, 42.5, suspension, friction)
-    assert STATUSES[solved(record)["status"]] == "ok"

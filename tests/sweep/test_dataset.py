@@ -41,6 +41,11 @@ def test_variables_have_the_declared_dimensions_units_and_names(ds):
         assert found.attrs["long_name"] == variable.long_name.format(**labels.SUSPENSION)
         assert found.attrs.get("units", "") == variable.units
         assert variable.dtype == "str" or found.dtype == np.dtype(variable.dtype)
+    # The status is a flag of CF.
+    flag = ds["status"].attrs
+    assert ds["status"].dtype == flag["flag_values"].dtype == np.int8
+    assert flag["flag_values"].tolist() == list(range(len(STATUSES)))
+    assert flag["flag_meanings"].split() == list(STATUSES)
 
 
 def test_coordinates(ds, sweep):
@@ -55,14 +60,6 @@ def test_coordinates(ds, sweep):
     assert (phase[0], phase[32]) == (0.0, pytest.approx(2.0 * np.pi))
     assert phase.size == 64
     assert ds["harmonic"].values.tolist() == list(range(1, 10))
-
-
-def test_status_is_a_cf_flag(ds):
-    attributes = ds["status"].attrs
-    assert ds["status"].dtype == np.int8
-    assert attributes["flag_values"].dtype == np.int8
-    assert attributes["flag_values"].tolist() == list(range(len(STATUSES)))
-    assert attributes["flag_meanings"].split() == list(STATUSES)
 
 
 def test_cf_conventions_in_the_file_itself(sweep):

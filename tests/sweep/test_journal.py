@@ -54,22 +54,18 @@ def test_drops_a_torn_record_and_goes_on_in_its_place(path, torn_by):
         assert opened.records["index"].tolist() == [7, 0, 3]
         opened.append(records(9))
     assert kept(path) == [7, 0, 3, 9]
-
-
-def test_drops_what_follows_a_damaged_record(path):
+    # What follows a damaged record is dropped.
     content = bytearray(path.read_bytes())
     content[-2 * STRIDE - 10] ^= 1
     path.write_bytes(bytes(content))
     assert kept(path) == [7]
-
-
-@pytest.mark.parametrize("length", [0, 1, 20])
-def test_begins_anew_after_a_torn_header(path, length):
-    path.write_bytes(path.read_bytes()[:length])
-    with Journal(path, DTYPE, HEADER) as opened:
-        assert opened.records.size == 0
-        opened.append(records(1))
-    assert kept(path) == [1]
+    # After a torn header it begins anew.
+    for length in (20, 1, 0):
+        path.write_bytes(path.read_bytes()[:length])
+        with Journal(path, DTYPE, HEADER) as opened:
+            assert opened.records.size == 0
+            opened.append(records(1))
+        assert kept(path) == [1]
 
 
 def test_the_last_record_of_a_case_counts(path):

@@ -1,6 +1,7 @@
 """Sweeps whose input does not repeat: config, dataset, resuming, figures."""
 
 import re
+from functools import cache
 
 import numpy as np
 import pytest
@@ -68,6 +69,12 @@ def folder(tmp_path, monkeypatch):
     return tmp_path
 
 
+@cache
+def ran(given):
+    """The dataset of the sweep with this input."""
+    return Sweep(config.parse(HEAD + given + TAIL), None).run_here()
+
+
 def test_a_recorded_input_is_found_beside_its_config_and_counts_from_its_first_sample(folder, monkeypatch):
     (folder / "elsewhere").mkdir()
     monkeypatch.chdir(folder / "elsewhere")
@@ -95,8 +102,8 @@ def test_a_file_that_changed_is_another_sweep(folder):
         _ = found.input
 
 
-def test_the_work_of_friction_is_the_energy_that_is_lost(folder):
-    ds = Sweep(config.load("release.toml"), folder / "a.nc").run_here()
+def test_the_work_of_friction_is_the_energy_that_is_lost():
+    ds = ran(RELEASE)
     start = 0.5 * 800.0 * (0.03 * ds["scale"]) ** 2
     left = 0.5 * 800.0 * ds["displacement"][..., -1] ** 2 + 0.5 * 2.0 * ds["velocity"][..., -1] ** 2
     assert ds["dissipated_energy"].values == pytest.approx(
@@ -128,7 +135,7 @@ def test_the_force_is_that_of_spring_and_friction_whatever_shakes_the_base(folde
 
 
 def test_an_exported_row_has_its_scale(folder):
-    Sweep(config.load("release.toml"), folder / "a.nc").run(n_jobs=1).to_netcdf(folder / "whole.nc")
+    ran(RELEASE).to_netcdf(folder / "whole.nc")
     invoke("export", "whole.nc", "-o", "out.csv", "--variables", "peak_displacement")
     table = np.genfromtxt("out.csv", delimiter=",", names=True, dtype=None, encoding="utf-8")
     assert table["scale"].tolist() == [0.5, 1.0, 2.0] * 2
@@ -140,32 +147,30 @@ def test_an_exported_row_has_its_scale(folder):
     )
 
 
-def test_what_does_not_decay_by_a_constant_friction_has_no_such_decay():
-    text = (HEAD + RELEASE + TAIL).replace("[sweep]", "[effects.ageing]\nrate = 0.02\ntime_s = 0.1\n[sweep]")
-    assert np.isnan(physics(config.parse(text))["friction_decay_per_cycle"])
-
-
 def test_a_release_at_rest_on_a_belt_is_measured_by_the_motion_on_the_belt():
     text = HEAD + 'contact = "belt"\nbelt_velocity_mm_per_s = 10.0\n' + RELEASE + TAIL
     given = config.parse(text.replace("displacement_mm = 30.0", "displacement_mm = 0.0"))
     assert given.solver.transient.length == pytest.approx(0.01 / 20.0)
 
 
-def test_peaks_of_a_decay_fall_by_four_friction_over_stiffness(folder):
-    ds = Sweep(config.load("release.toml"), folder / "a.nc").run_here()
+def test_peaks_of_a_decay_fall_by_four_friction_over_stiffness():
+    ds = ran(RELEASE)
     assert ds.attrs["friction_decay_per_cycle"] == pytest.approx(4.0 * 2.0 / 800.0)
     case = ds.sel(friction_law="coulomb", scale=2.0)
     _, peaks = ring_down.peaks(case["time"].values, case["displacement"].values)
     assert np.abs(peaks[:5]) == pytest.approx(0.06 - 0.005 * np.arange(1, 6), abs=2e-5)
     assert ring_down.decrement(np.array([4.0, -3.0, 2.0]))[0] == pytest.approx(np.log(2.0))
+    # Where friction is not constant there is no such decay.
+    text = (HEAD + RELEASE + TAIL).replace("[sweep]", "[effects.ageing]\nrate = 0.02\ntime_s = 0.1\n[sweep]")
+    assert np.isnan(physics(config.parse(text))["friction_decay_per_cycle"])
 
 
 @pytest.mark.few(3)
 @pytest.mark.parametrize("kind", sorted(figures.transient.FIGURES))
-@pytest.mark.parametrize("name", ["release", "swept"])
-def test_every_figure_draws_and_has_units(folder, kind, name):
-    ds = Sweep(config.load(f"{name}.toml"), folder / "a.nc").run_here()
-    if (kind, name) == ("backbone", "swept"):
+@pytest.mark.parametrize("given", [RELEASE, SWEPT], ids=["release", "swept"])
+def test_every_figure_draws_and_has_units(kind, given):
+    ds = ran(given)
+    if (kind, given) == ("backbone", SWEPT):
         with pytest.raises(ValueError, match="an input drives the motion"):
             figures.draw(ds, kind)
         return
@@ -246,15 +251,6 @@ def test_faults_of_other_kinds_are_told(given, told):
     assert told in fault
 
 
-@pytest.mark.parametrize("unit", ["m/s^2", "m/s2", "m/s²"])
-def test_the_unit_of_a_record_is_read_in_any_spelling_and_written_in_one(tmp_path, unit):
-    (tmp_path / "bump.csv").write_text("t,base\n0.0,1.0\n0.1,2.0\n0.2,1.0\n")
-    given = RECORD.replace('"mm"', f'"{unit}"\nquantity = "acceleration"')
-    found = config.parse(HEAD + given + TAIL, directory=tmp_path)
-    assert 'unit = "m/s^2"' in found.to_toml()
-    assert found.input.given.max() == 2.0
-
-
 @pytest.mark.parametrize(
     ("name", "text", "told"),
     [
@@ -279,19 +275,21 @@ def test_a_case_of_a_sine_and_a_check_by_radau_are_refused(folder):
     assert "--verify" in invoke("run", "swept.toml", "--verify", "2", code=2)
 
 
-def test_the_template_shows_all_kinds_and_each_is_valid():
+def test_the_template_shows_all_kinds_of_inputs_and_a_config_with_one_reads_back(folder):
     text = config.template()
     for name, kind in config.inputs.KINDS.items():
         assert f'kind = "{name}"' in text
-        for key in kind.keys:
-            assert f"# {key} = " in text
+        assert all(f"# {key} = " in text for key in kind.keys)
     assert config.inputs.SCALE.key in text
-
-
-def test_a_config_with_an_input_reads_back(folder):
     for name in ("release", "record", "swept"):
         read = config.load(f"{name}.toml")
         assert config.parse(read.to_toml()) == read
+    # Units are read in any spelling, and written in one.
+    for unit in ("m/s^2", "m/s2", "m/s²"):
+        given = RECORD.replace('"mm"', f'"{unit}"\nquantity = "acceleration"')
+        found = config.parse(HEAD + given + TAIL, directory=folder)
+        assert 'unit = "m/s^2"' in found.to_toml()
+        assert found.input.given.max() == pytest.approx(8.0)
 
 
 AXES = "[sweep.axes]\ninput.start_hz = [1.0, 2.0]\ninput.stop_hz = [4.0, 6.0]\n"
