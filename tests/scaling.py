@@ -11,7 +11,10 @@ from wedgesweep.natural_units import Dimension
 from wedgesweep.quantity import Quantity
 from wedgesweep.systems.suspension.parameters import SUSPENSION
 
-TABULATED = Quantity(empirical_force.TABLE, np.nan, "forces of a table")
+TABULATED = [
+    Quantity(key, np.nan, "forces of a table")
+    for key in (empirical_force.TABLE, f"{empirical_force.COEFFICIENTS}_N")
+]
 
 
 class Size(NamedTuple):
@@ -44,7 +47,7 @@ class Size(NamedTuple):
     def effects(self, given):
         """Numbers of effects, SI by name or in key units by key."""
         return {
-            name: self.numbers((*EFFECTS[name].quantities, TABULATED), numbers)
+            name: self.numbers((*EFFECTS[name].quantities, *TABULATED), numbers)
             for name, numbers in given.items()
         }
 

@@ -4,9 +4,9 @@ from collections.abc import Callable, Sequence
 from statistics import median
 from typing import Any, NamedTuple
 
-from validation import judge
+from validation import empirical, judge
 from validation.judge import Record, Share, share
-from validation.time_records import TIME_KINDS, WORSE
+from validation.time_records import FORCE, HIDDEN_FORCE, TIME_KINDS, WORSE
 from wedgesweep.effects import EFFECTS
 
 # Excess chi-squared from which an effect is strong, and from which it shows at all.
@@ -118,7 +118,8 @@ def goals(sets: Sets) -> list[Goal]:
         _at_least("load recorded: preload or friction", sets.of("load"), judge.tells_load_from_friction, 1.0),
         _at_least("  exact", sets.of("load"), judge.exact, 0.95),
         _listed("  without the load", sets.of("no-load"), judge.tells_load_from_friction),
-        *(line for kind in TIME_KINDS for line in _of_time_records(kind, sets.of(kind))),
+        *(line for kind in TIME_KINDS if kind != FORCE for line in _of_time_records(kind, sets.of(kind))),
+        *_of_hidden_forces(sets.of(FORCE)),
         _coverage(f"{WORSE}: 95 % intervals cover", [r for r in worse if r["truth"] and judge.exact(r)]),
         _coverage("95 % intervals (single effects, exact) cover", sets.exact_singles),
         *_gain(sets.exact_singles),
@@ -134,6 +135,20 @@ def _of_time_records(kind: str, records: Sequence[Record]) -> list[Goal]:
         _at_least(f"{kind}, excess >= 800: exact or in a tie", strong, judge.exact_or_tied, 0.95),
         _at_most("  wrong `named`", hidden, judge.wrongly_named, 0.03),
         _at_most("  nothing hidden: a cause", clean, judge.names_any, 0.0),
+    ]
+
+
+def _of_hidden_forces(records: Sequence[Record]) -> list[Goal]:
+    """Lines for sets that hide a force which is no candidate, and for those beside them."""
+    hidden = [record for record in records if record["truth"] == [HIDDEN_FORCE]]
+    strong = [record for record in hidden if judge.excess(record) >= STRONG]
+    others = [record for record in records if record["truth"] != [HIDDEN_FORCE]]
+    return [
+        _at_least("force without a name: model within 1.5 noises", strong, empirical.extends, 0.80),
+        _at_least("  its shape in the band where data are dense", strong, empirical.shows_shape, 0.80),
+        _at_most("  wrong `named`", hidden, judge.wrongly_named, 0.0),
+        _at_least("known effect or none: no force is offered", others, empirical.not_offered, 0.95),
+        _at_least("at most twice the work with the force", records, empirical.cheap, 1.0),
     ]
 
 

@@ -11,7 +11,7 @@ from pathlib import Path
 from shutil import rmtree
 from typing import Any
 
-from validation import time_records, unmodelled_data, worse
+from validation import empirical, time_records, unmodelled_data, worse
 from validation.baselines import BASELINES
 from validation.draft import Draft
 from validation.hiding import draw
@@ -139,14 +139,19 @@ def _run_time_records(one: DataSet, directory: Path) -> Record:
     files = [directory / "true.toml", "--tests", directory / "tests.toml", "-o", directory / DATA]
     noise = ["--noise", drawn["noise"], "--level", drawn["level"], "--input-level", 0.5 * drawn["level"]]
     more = ["--sampling-hz", drawn["sampling_hz"], "--seed", one.noise_seed, "--n-jobs", 1]
+    if time_records.HIDDEN_FORCE in drawn["hidden"]:
+        more += ["--plugin", time_records.PLUGIN]
     wedgesweep("synthesize", *files, *noise, *more, "--settle-periods", SETTLE_PERIODS)
     made = {key: drawn[key] for key in ("law", "noise", "level")}
     if one.kind == time_records.WORSE:
         way, size, _ = worse.of(one.index)
         worse.worsen(directory / DATA, way, size, one.random(WORSENED))
         made |= {"way": way, "size": size}
-    found = _diagnose(one, directory, clock)
+    asked = ["--empirical-force"] if one.kind == time_records.FORCE else []
+    found = _diagnose(one, directory, clock, *asked)
     record = _record(one, sorted(drawn["hidden"]), drawn["hidden"], made, found, None)
+    if one.kind == time_records.FORCE:
+        record["empirical_force"] = empirical.told(directory / RESULT, drawn["hidden"], drawn["level"])
     return record | {"baselines": {}, "seconds": clock.seconds}
 
 

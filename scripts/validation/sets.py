@@ -39,6 +39,7 @@ ALL = {
     "load": Kind(10, WEAK),  # more preload or friction, in four tests that record the load of the column
     "no-load": Kind(10, WEAK),  # the same without that channel
     "warm": Kind(40),  # thermal drift, a neighbour of it or none, in loops at several temperatures
+    "force": Kind(80),  # a force that is no candidate; a known effect or none in every fourth
 }
 KINDS = tuple(ALL)
 SHARED = {"added": "poor", "no-load": "load"}

@@ -3,19 +3,23 @@
 Oscillators and suspensions of any size take turns; those of kind ``damper`` and ``warm`` are dampers. Each
 hides one effect, or none in every fifth set. It is as strong as is needed for a drawn change of the response;
 sets whose excess is too small for a name all the same count as weak. A set of kind ``worse`` is a transient,
-loop or mixed set whose files ``worse.py`` makes worse.
+loop or mixed set whose files ``worse.py`` makes worse. One of kind ``force`` is such a set of an oscillator,
+with four loops in place of two; it hides a force that is no candidate (``hidden_force.py``), and every fourth
+one a known effect or none.
 """
 
 from collections.abc import Callable
 from math import nan, pi
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from validation import ranges, rigs, worse
+from validation import hidden_force, ranges, rigs, worse
 from validation.rigs import Rig
 from validation.sets import DataSet
 from validation.strength import reach
+from wedgesweep import plugins
 from wedgesweep.config import from_document
 from wedgesweep.effects import EFFECTS
 from wedgesweep.effects.thermal_drift import at_temperature
@@ -27,13 +31,19 @@ from wedgesweep.synthesize.plan import PlannedTest
 from wedgesweep.synthesize.tables import loop
 from wedgesweep.synthesize.transients import transient
 
-TIME_KINDS = ("transient", "loop", "mixed", "worse", "damper", "warm")
-TRANSIENT, LOOP, MIXED, WORSE, DAMPER, WARM = TIME_KINDS
+TIME_KINDS = ("transient", "loop", "mixed", "worse", "damper", "warm", "force")
+TRANSIENT, LOOP, MIXED, WORSE, DAMPER, WARM, FORCE = TIME_KINDS
 MADE_WORSE = (TRANSIENT, LOOP, MIXED)
 LAWS = ("coulomb", "static-dynamic")
 # Effects of a sine as an input, and those that a loop cannot show.
 OF_A_SINE = ("input_distortion", "stray_vibration", "fixture_resonance", "cross_slip")
 NOT_IN_LOOPS = (*OF_A_SINE, "column_compliance", "displacement_gain", "velocity_lag")
+HIDDEN_FORCE, PLUGIN = hidden_force.EFFECT.name, Path(hidden_force.__file__)
+LOOPS_OF_FOUR = "loops of four"
+# Frequency of the first loop over the natural one, and the least force that is tried over the spring's.
+SLOWER, LEAST_FORCE = 0.4, 1e-4
+# Of so many sets of kind ``force`` the last one hides a known effect, or none.
+KNOWN_EACH = 4
 # Of CLEAN_EACH sets the last one hides nothing.
 CLEAN_EACH = 5
 # Of a suspension of the bench's size: natural frequency (Hz), largest motion (mm) that it is released to, and
@@ -91,6 +101,8 @@ def draw(one: DataSet) -> dict[str, Any]:
     RuntimeError
         If no rig shows the effect as strongly as is wanted.
     """
+    if one.kind == FORCE:
+        plugins.load(PLUGIN)
     for attempt in range(ATTEMPTS):
         if found := _drawn(one, attempt):
             return found
@@ -101,26 +113,22 @@ def _drawn(one: DataSet, attempt: int) -> dict[str, Any] | None:
     """Documents of a set; None if its effect cannot be as strong as is wanted."""
     random = one.random(attempt)
     law = LAWS[one.index % len(LAWS)]
+    kind, turn = _kind_and_turn(one)
     if one.kind in HIDDEN_IN:
         drawn = _oscillator(random, *OF_DAMPER)
+    elif one.kind == FORCE or not one.index // 2 % 2:
+        drawn = _oscillator(random)
     else:
-        drawn = _suspension(random) if one.index // 2 % 2 else _oscillator(random)
-    kind, turn = one.kind, one.index
-    if kind == WORSE:  # each fault in all kinds of test, and then with all kinds of noise
-        turn, place = divmod(worse.of(one.index).turn, len(MADE_WORSE))
-        kind = MADE_WORSE[place]
+        drawn = _suspension(random)
     rig, tests = drawn.rig, TESTS[kind](drawn)
     planned = plan.from_document({"test": tests}).tests
     sampling_hz = round(SAMPLED * drawn.frequency, 3)
     hidden: dict[str, dict[str, float]] = {}
-    if one.index % CLEAN_EACH != CLEAN_EACH - 1:
-        left_out = NOT_IN_LOOPS if kind == LOOP else OF_A_SINE
-        among = HIDDEN_IN.get(kind, ranges.LEADING)
-        known = set(rig.possible_effects).intersection(among).difference(left_out)
-        possible = [name for name in EFFECTS if name in known]
-        order = np.random.default_rng([one.seed, 101]).permutation(len(possible))
-        effect = possible[order[(one.index + attempt // SAME_EFFECT) % len(possible)]]
-        path, wanted = ranges.path(effect, random, rig.units), rigs.logarithmic(CHANGE, random)
+    effect = _effect(one, attempt, rig, kind)
+    if effect:
+        named = effect != HIDDEN_FORCE
+        path = ranges.path(effect, random, rig.units) if named else _force(turn, kind, drawn)
+        wanted = rigs.logarithmic(CHANGE, random)
         shown = next((each for each in planned if each.release_mm), planned[0])
         change = _change(rig, law, shown, sampling_hz)
         strength = reach(wanted, lambda s: change({effect: path(s)}))
@@ -138,6 +146,46 @@ def _drawn(one: DataSet, attempt: int) -> dict[str, Any] | None:
         "sampling_hz": sampling_hz,
         "level": round(rigs.logarithmic(LEVEL, random), 5),
         "noise": NOISES[turn % 3],
+    }
+
+
+def _kind_and_turn(one: DataSet) -> tuple[str, int]:
+    """Kind of the tests of a set, and its place among those of its kind."""
+    if one.kind == WORSE:  # each fault in all kinds of test, and then with all kinds of noise
+        turn, place = divmod(worse.of(one.index).turn, len(MADE_WORSE))
+        return MADE_WORSE[place], turn
+    if one.kind == FORCE:  # each force in all kinds of test
+        turn = one.index - one.index // KNOWN_EACH
+        return (LOOPS_OF_FOUR, TRANSIENT, MIXED)[(turn + turn // len(hidden_force.NAMES)) % 3], turn
+    return one.kind, one.index
+
+
+def _effect(one: DataSet, attempt: int, rig: Rig, kind: str) -> str | None:
+    """The effect that a set hides; None if it hides none."""
+    index, each = one.index, CLEAN_EACH
+    if one.kind == FORCE:
+        if index % KNOWN_EACH < KNOWN_EACH - 1:
+            return HIDDEN_FORCE
+        index, each = index // KNOWN_EACH, 2
+    if index % each == each - 1:
+        return None
+    left_out = NOT_IN_LOOPS if kind in (LOOP, LOOPS_OF_FOUR) else OF_A_SINE
+    among = HIDDEN_IN.get(one.kind, ranges.LEADING)
+    known = set(rig.possible_effects).intersection(among).difference(left_out)
+    possible = [name for name in EFFECTS if name in known]
+    order = np.random.default_rng([one.seed, 101]).permutation(len(possible))
+    return possible[order[(index + attempt // SAME_EFFECT) % len(possible)]]
+
+
+def _force(turn: int, kind: str, drawn: Drawn) -> Callable[[float], dict[str, float]]:
+    """Numbers of a force that is no candidate, by its strength from 0 to 1."""
+    fastest = drawn.travel * 2.0 * pi * drawn.frequency * (SLOWER if kind == LOOPS_OF_FOUR else 1.0)
+    spring = drawn.rig.sections["oscillator"]["spring_N_per_mm"] * drawn.travel
+    return lambda strength: {
+        "force_N": spring * LEAST_FORCE ** (1.0 - strength),
+        "shape": float(turn % len(hidden_force.NAMES)),
+        "displacement_mm": drawn.travel,
+        "velocity_mm_per_s": fastest,
     }
 
 
@@ -226,17 +274,20 @@ def _transients(drawn: Drawn) -> list[dict[str, Any]]:
 def _loops(drawn: Drawn) -> list[dict[str, Any]]:
     length = {"kind": "loop", "duration_s": LOOPS / drawn.frequency}
     return [
-        {**length, "frequency_hz": 0.4 * drawn.frequency, "amplitude_mm": drawn.imposed},
+        {**length, "frequency_hz": SLOWER * drawn.frequency, "amplitude_mm": drawn.imposed},
         {**length, "frequency_hz": 0.7 * drawn.frequency, "amplitude_mm": 0.5 * drawn.imposed},
     ]
 
 
-def _warm(drawn: Drawn) -> list[dict[str, Any]]:
-    tests = [
+def _four_loops(drawn: Drawn) -> list[dict[str, Any]]:
+    return [
         *_loops(drawn),
         *({**each, "amplitude_mm": 0.7 * each["amplitude_mm"]} for each in _loops(drawn)),
     ]
-    return [{**each, "temperature_C": t} for each, t in zip(tests, TEMPERATURES, strict=True)]
+
+
+def _warm(drawn: Drawn) -> list[dict[str, Any]]:
+    return [{**each, "temperature_C": t} for each, t in zip(_four_loops(drawn), TEMPERATURES, strict=True)]
 
 
 def _mixed(drawn: Drawn) -> list[dict[str, Any]]:
@@ -247,4 +298,7 @@ def _mixed(drawn: Drawn) -> list[dict[str, Any]]:
     return [*steady, *_releases(drawn), _loops(drawn)[0]]
 
 
-TESTS = {TRANSIENT: _transients, LOOP: _loops, MIXED: _mixed, DAMPER: _loops, WARM: _warm}
+TESTS = {
+    **{TRANSIENT: _transients, LOOP: _loops, MIXED: _mixed, DAMPER: _loops, WARM: _warm},
+    LOOPS_OF_FOUR: _four_loops,
+}

@@ -3,7 +3,7 @@
 from math import cos, exp, hypot, log, sin
 
 import numpy as np
-from scipy.interpolate import CubicHermiteSpline
+from scipy.interpolate import BSpline, make_interp_spline
 
 from tests.physics.compiled_mechanics import owned
 from wedgesweep.effects import EFFECTS, empirical_force, of_system
@@ -46,7 +46,7 @@ def tabulated(displacement, velocity, place=PLACE):
         "displacement": displacement,
         "velocity": velocity,
         "centre": centre * displacement,
-        empirical_force.FORCES: tuple(forces.ravel()),
+        empirical_force.COEFFICIENTS: empirical_force.coefficients(forces),
     }
 
 
@@ -92,16 +92,15 @@ def coefficient(velocity, across, at_rest, p):
 
 
 def _tabulated(table, x, velocity):
-    """The force of a table by scipy's cubics; a suspension's counts displacement from rest."""
+    """The force of a table by scipy's splines; a suspension's counts displacement from rest."""
     if table["velocity"] == 0.0:
         return 0.0
     counts = empirical_force.PLACES, empirical_force.SPEEDS
-    speed = velocity / table["velocity"]
-    graded = (1.0 + empirical_force.GRADING) * speed / (abs(speed) + empirical_force.GRADING)
-    force = table[empirical_force.FORCES].reshape(counts)
-    for at, count in zip(((x - table["centre"]) / table["displacement"], graded), counts, strict=True):
-        nodes = np.linspace(-1.0, 1.0, count)
-        force = CubicHermiteSpline(nodes, force, np.gradient(force, nodes, axis=0))(np.clip(at, -1.0, 1.0))
+    force = table[empirical_force.COEFFICIENTS].reshape(counts)
+    at = (x - table["centre"]) / table["displacement"], velocity / table["velocity"]
+    for value, nodes in zip(at, empirical_force.nodes(1.0, 1.0), strict=True):
+        knots = make_interp_spline(nodes, nodes).t
+        force = BSpline(knots, force, 3)(np.clip(value, -1.0, 1.0))
     return force
 
 

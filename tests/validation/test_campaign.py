@@ -1,10 +1,12 @@
 """What a validation campaign draws, how it judges, and the results on record."""
 
+import json
 from pathlib import Path
 
 import numpy as np
 import pytest
-from validation import hiding, judge, ranges, response, rigs, run, sets, strength
+import xarray as xr
+from validation import empirical, hidden_force, hiding, judge, ranges, response, rigs, run, sets, strength
 from validation.__main__ import main
 from validation.judge import Share
 from validation.time_records import LOOP, MIXED, TRANSIENT
@@ -130,6 +132,34 @@ def test_the_leading_cause_is_judged_by_the_ladder():
     assert led((), ("ageing",), ("preload", "stribeck"))
     assert not led((), ("ageing",), ("ageing", "preload"))
     assert not led(())
+
+
+def test_an_empirical_force_is_judged_by_the_hidden_one(tmp_path):
+    places, speeds = np.linspace(-0.01, 0.01, 25), np.linspace(-0.05, 0.05, 33)
+    numbers = {"force_N": 2.0, "displacement_mm": 10.0, "velocity_mm_per_s": 50.0}
+    shapes = range(len(hidden_force.NAMES))
+    forces = [hidden_force.on_mass(numbers | {"shape": which}, places, speeds) for which in shapes]
+    assert all(0.5 <= np.abs(each).max() / 2.0 <= 1.5 for each in forces)
+    numbers, force = numbers | {"shape": 10}, forces[10]
+    off = np.where(np.arange(force.size) % 4 == 0, 0.3, 0.1).reshape(force.shape)
+    grid = ("force_place", "force_speed")
+    found = {
+        "missing_force": (grid, force - force.mean() + off - off.mean()),
+        "missing_force_std": (grid, np.full(force.shape, 0.1 / empirical.BAND)),
+        "missing_force_density": (grid, np.ones(force.shape)),
+    }
+    data = xr.Dataset(found, {"force_place": places, "force_speed": speeds})
+    data.to_netcdf(tmp_path / empirical.FILE)
+    stages = [{"stage": "single effects", "work": 30.0}, {"stage": empirical.STAGE, "work": 10.0}]
+    named = {"accuracy_held_out": 0.03}
+    told = {"offered": True, "accuracy_held_out": 0.01, "named": named, "degrees_of_freedom": 9.0}
+    document = json.dumps({"empirical_force": told, "stages": stages})
+    (tmp_path / "diagnosis.json").write_text(document)
+    kept = empirical.told(tmp_path, {"hidden_force": numbers}, 0.01)
+    assert kept["left"] == pytest.approx(2.0**0.5)
+    assert kept["work"] == pytest.approx(4.0 / 3.0)
+    assert kept["in_band"] == pytest.approx(0.75, abs=0.01)
+    assert kept["error"] == pytest.approx(off.std() / (force - force.mean()).std())
 
 
 def test_an_error_that_is_there_may_be_named_beside_the_cause():

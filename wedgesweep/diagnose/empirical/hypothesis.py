@@ -9,7 +9,15 @@ from wedgesweep.config import Config
 from wedgesweep.diagnose.fit_data import FitData, Motion
 from wedgesweep.diagnose.fit_parameters import FitParameter, Hypothesis, Values
 from wedgesweep.effects import merge
-from wedgesweep.effects.empirical_force import FORCES, NAME, PLACES, SPEEDS, TABLE
+from wedgesweep.effects.empirical_force import (
+    COEFFICIENTS,
+    NAME,
+    PLACES,
+    SPEEDS,
+    TABLE,
+    coefficients,
+    nodes,
+)
 from wedgesweep.solvers import imposed_motion
 
 # Largest force of a node, in units of the largest force in the tests.
@@ -69,10 +77,10 @@ class EmpiricalHypothesis(Hypothesis):
 
     def values(self, x: np.ndarray) -> Values:
         found = super().values(x)
-        forces = tuple((self.ranges.force * x[self.nodes]).tolist())
+        forces = coefficients(self.ranges.force * x[self.nodes])
         own = self.ranges
         table = {"displacement": own.displacement, "velocity": own.velocity, "centre": own.centre}
-        return {**found, NAME: {**table, FORCES: forces}}  # type: ignore[dict-item]
+        return {**found, NAME: {**table, COEFFICIENTS: forces}}  # type: ignore[dict-item]
 
 
 # Time (s) between samples of a motion in which nothing that has a memory moves.
@@ -81,14 +89,30 @@ INSTANT = 1e-9
 SLOW = 1e-2
 
 
-def half_step(data: FitData, values: Values, ranges: Ranges) -> float:
-    """Half the step (N) at zero velocity that effects add to the force against the motion, in the centre."""
-    model, place = data.model, np.full(2, ranges.centre)
-    rows = [model.record_with(merge(model.effects, each), data.law, 0.0) for each in (values, {})]
+def force_of(data: FitData, values: Values, without: Values, motion: tuple[np.ndarray, float]) -> np.ndarray:
+    """Force (n,) on the mass (N) of effects less that of others at places (n,) (m) and one speed (m/s)."""
+    places, speed = motion
+    model = data.model
+    rows = [model.record_with(merge(model.effects, each), data.law, 0.0) for each in (values, without)]
+    velocity, nothing = np.full(places.size, speed), np.zeros(places.size)
+    there, here = imposed_motion.forces(np.concatenate(rows), places, velocity, nothing, INSTANT)
+    return np.asarray(here - there)
 
-    def added(speed: float) -> float:
-        velocity, nothing = np.full(2, speed), np.zeros(2)
-        forces = imposed_motion.forces(np.concatenate(rows), place, velocity, nothing, INSTANT)[:, 0]
-        return float(forces[0] - forces[1])
 
-    return 0.5 * (added(SLOW * ranges.velocity) - added(-SLOW * ranges.velocity))
+def half_step(data: FitData, values: Values, without: Values, ranges: Ranges) -> float:
+    """Half the step (N) that the force against the motion makes at zero velocity in the centre."""
+    place, speed = np.full(2, ranges.centre), SLOW * ranges.velocity
+    ahead, back = (force_of(data, values, without, (place, side * speed))[0] for side in (1.0, -1.0))
+    return 0.5 * float(back - ahead)
+
+
+def at_nodes(data: FitData, values: Values, without: Values, ranges: Ranges) -> tuple[np.ndarray, float]:
+    """Force at the nodes, (PLACES, SPEEDS), without its step at zero velocity, and half of that."""
+    places, speeds = nodes(ranges.displacement, ranges.velocity, ranges.centre)
+    step, middle = half_step(data, values, without, ranges), SPEEDS // 2
+    found = np.empty((places.size, speeds.size))
+    for j, speed in enumerate(speeds):
+        if j != middle:
+            found[:, j] = force_of(data, values, without, (places, speed)) + step * np.sign(speed)
+    found[:, middle] = 0.5 * (found[:, middle - 1] + found[:, middle + 1])
+    return found, step

@@ -4,8 +4,9 @@ The force of node i is x_i. With the whitened residual r, nuisance parameters at
 
     minimise  |r(x)|^2 + a |D_z x|^2 + b |D_v x|^2
 
-where D_z and D_v are second differences over displacement and velocity (P-splines: Eilers and Marx, 1996).
-The weights a and b are those at which each group of tests is predicted best by a fit to all others.
+where D_z and D_v are second differences over displacement and velocity (P-splines: Eilers and Marx, 1996);
+springs and dampers have none.
+The weights a and b are those at which groups of tests are predicted best by a fit to all others.
 """
 
 from collections.abc import Sequence
@@ -18,7 +19,7 @@ from wedgesweep.diagnose.evaluation import Evaluation
 from wedgesweep.diagnose.least_squares import CONVERGED_SHARE
 from wedgesweep.diagnose.model import Fit, Model
 from wedgesweep.diagnose.normal_equations import NormalEquations, normal_equations
-from wedgesweep.effects.empirical_force import PLACES, SPEEDS
+from wedgesweep.effects.empirical_force import PLACES, SPEEDS, nodes
 
 # Powers of ten of weights of roughness over what the tests know of a node on average: the first ones that are
 # tried, from which those beside them are as long as these predict better, and the ends.
@@ -119,8 +120,9 @@ def _with_roughness(plain: SmoothFit, powers: tuple[int, int]) -> SmoothFit:
     """A fit with a penalty of roughness over displacement and over velocity, weights as powers of ten."""
     own = plain.hypothesis.nodes
     known = np.trace(plain.information.sum(axis=0)[own, own]) / (PLACES * SPEEDS)
-    over_place = np.kron(_second_differences(PLACES), np.eye(SPEEDS))
-    over_speed = np.kron(np.eye(PLACES), _second_differences(SPEEDS))
+    places, speeds = nodes(1.0, 1.0)
+    over_place = np.kron(_second_differences(places), np.eye(SPEEDS))
+    over_speed = np.kron(np.eye(PLACES), _second_differences(speeds))
     penalty = (
         10.0 ** powers[0] * over_place + 10.0 ** powers[1] * over_speed + RIDGE * np.eye(PLACES * SPEEDS)
     )
@@ -130,9 +132,11 @@ def _with_roughness(plain: SmoothFit, powers: tuple[int, int]) -> SmoothFit:
     return replace(plain, prior=prior, pull=pull)
 
 
-def _second_differences(count: int) -> np.ndarray:
-    """Matrix (count, count) of the squared sum of second differences."""
-    rows = np.diff(np.eye(count), 2, axis=0)
+def _second_differences(nodes: np.ndarray) -> np.ndarray:
+    """Matrix (n, n) of the squared sum of second differences; 0 for what is linear between uneven nodes."""
+    slopes = np.diff(np.eye(nodes.size), axis=0) / np.diff(nodes)[:, None]
+    before, after = np.diff(nodes)[:-1], np.diff(nodes)[1:]
+    rows = (2.0 * before * after / (before + after))[:, None] * np.diff(slopes, axis=0)
     return rows.T @ rows
 
 

@@ -15,14 +15,16 @@ from wedgesweep.diagnose.cross_validation import (
     with_own_nuisances,
 )
 from wedgesweep.diagnose.empirical.force_map import ForceMap, force_map
-from wedgesweep.diagnose.empirical.hypothesis import EmpiricalHypothesis, Ranges, half_step
+from wedgesweep.diagnose.empirical.hypothesis import EmpiricalHypothesis, Ranges, at_nodes, half_step
 from wedgesweep.diagnose.empirical.nearest import Nearest, nearest
 from wedgesweep.diagnose.empirical.smooth_fit import SmoothFit, fit
+from wedgesweep.diagnose.evaluation import Evaluation
 from wedgesweep.diagnose.explanation import NOTABLE
 from wedgesweep.diagnose.fit_data import Motion
+from wedgesweep.diagnose.fit_parameters import Values
 from wedgesweep.diagnose.ladder import Level, Rated
 from wedgesweep.diagnose.model import Fit, Model
-from wedgesweep.effects.empirical_force import FORCES, NAME, TABLE
+from wedgesweep.effects.empirical_force import NAME, TABLE
 
 # The force is fitted again with the weights of the accuracy reached, at most this many times, as long as that
 # gets notably smaller: far from the tests a force is found step by step.
@@ -67,13 +69,12 @@ class EmpiricalForce:
         found: dict[str, dict[str, object]] = {
             name: dict(own) for name, own in hypothesis.in_key_units(x).items() if name != NAME
         }
-        own = hypothesis.values(x)[NAME]
         ranges = hypothesis.ranges
         found[NAME] = {
             "displacement_mm": 1e3 * ranges.displacement,
             "velocity_mm_per_s": 1e3 * ranges.velocity,
             "centre_mm": 1e3 * ranges.centre,
-            TABLE: list(own[FORCES]),  # type: ignore[call-overload]
+            TABLE: (ranges.force * x[hypothesis.nodes]).tolist(),
         }
         return found
 
@@ -94,12 +95,10 @@ def empirical_force(base: Fit, levels: Sequence[Level], each: Each) -> Empirical
     hypothesis = EmpiricalHypothesis.of(data.model, Ranges.of(data, moved), units=data.units)
     rows = [tests for _, tests in groups]
     size = named.accuracy if named.accuracy < inf else 1.0
-    model = Model(data.with_model_error(size), hypothesis)
-    neutral = np.clip([each.neutral for each in hypothesis.parameters], hypothesis.low, hypothesis.high)
-    start = model.evaluate(model.start(base, neutral))
-    if not start.found:
+    start = _start(Model(data.with_model_error(size), hypothesis), base, named)
+    if start is None:
         return None
-    found = fit(model, start, rows)
+    found = fit(*start, rows)
     own = _accuracy(found)
     for _ in range(REFITS):
         if own == 0.0 or own > NOTABLE * size:
@@ -118,12 +117,37 @@ def _left_out(rated: Rated) -> float:
     return inf if rated.held_out is None else rated.held_out
 
 
+def _start(model: Model, base: Fit, named: Rated) -> tuple[Model, Evaluation] | None:
+    """The better of two starts: no force, and that of the named explanation; None if none has a response."""
+    hypothesis = model.hypothesis
+    assert isinstance(hypothesis, EmpiricalHypothesis)
+    own, neutral = hypothesis.nodes, np.array([each.neutral for each in hypothesis.parameters])
+    starts = [(base, np.clip(neutral, hypothesis.low, hypothesis.high))]
+    values, without = _values(named.fit)
+    forces, step = at_nodes(model.data, values, without, hypothesis.ranges)
+    if np.isfinite(forces).all():
+        x = neutral.copy()
+        x[own] = forces.ravel() / hypothesis.ranges.force
+        unit = _step_of(model, x + np.eye(1, x.size)[0]) if hypothesis.step else 0.0
+        x[0] += step / unit if unit else 0.0
+        starts.append((named.fit, np.clip(x, hypothesis.low, hypothesis.high)))
+    tried = [model.evaluate(model.start(one, x)) for one, x in starts]
+    best = min(tried, key=lambda evaluation: evaluation.chi2)
+    return (model, best) if best.found else None
+
+
+def _values(fitted: Fit) -> tuple[Values, Values]:
+    """Numbers of all effects of a fit, and those of its uncertain ones alone."""
+    model = fitted.model
+    return model.values(fitted.x), model.uncertain.values(fitted.x[model.size :])
+
+
 def _step_of(model: Model, x: np.ndarray) -> float:
     """Half the step (N) at zero velocity beyond that of the base model, of parameters (k,)."""
     assert isinstance(model.hypothesis, EmpiricalHypothesis)
     values = model.hypothesis.values(x)
     del values[NAME]
-    return half_step(model.data, values, model.hypothesis.ranges)
+    return half_step(model.data, values, {}, model.hypothesis.ranges)
 
 
 def _step(found: SmoothFit) -> tuple[float, float]:
