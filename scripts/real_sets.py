@@ -37,11 +37,7 @@ EDITS = {
         ("measured.toml", r"scale = 1.0", "scale = 200.0"),
     ],
 }
-# Tried where the force is asked for, and how many of its nearest names are shown.
-CANDIDATES = (
-    *("viscous_damping", "directional_damping", "quadratic_drag", "cubic_stiffness", "guide_friction"),
-    *("friction_level", "stribeck", "presliding", "directional_friction", "empirical_force"),
-)
+# How many nearest names of a force are shown.
 SHOWN = 3
 ANSWERS = ("set", "lines edited", "verdict", "best of each size: accuracy (held out)", "answer")
 FORCES = ("recording", "verdict", "model on trial", "best named", "table", "freedom", "looks like")
@@ -67,7 +63,7 @@ def row(name: str, options: argparse.Namespace) -> list[str]:
     place = options.out / name
     begin(name, options.directory.absolute(), place)
     command("check", "measured.toml", place=place)
-    more = ("--effects", ",".join(CANDIDATES)) if options.forces else ()
+    more = ("--empirical-force",) if options.forces else ()
     limit = ("--time-limit", options.time_limit)
     told = command("diagnose", "measured.toml", "-o", "found", "--no-report", *limit, *more, place=place)
     found = json.loads((place / "found" / "diagnosis.json").read_text())
