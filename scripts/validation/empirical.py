@@ -8,14 +8,13 @@ import numpy as np
 import xarray as xr
 
 from validation import hidden_force
+from wedgesweep.figures.diagnosis.marks import STDS
 
 # Where there are at least so many samples over those of an average cell, data are dense.
 DENSE = 0.5
 # What a model may leave of tests left out, over their noise, and the share of the dense cells in which the
 # true force lies in the 95 % band.
 MOST_LEFT, LEAST_IN_BAND = 1.5, 0.9
-# Standard deviations of a 95 % band.
-BAND = 1.96
 STAGE, FILE = "empirical force", "diagnosis.nc"
 
 
@@ -58,7 +57,7 @@ def _shape(data: xr.Dataset, numbers: dict[str, float]) -> dict[str, float]:
     truth = truth - np.average(truth[measured], weights=density[measured])
     error = data["missing_force"].values - truth
     dense = density >= DENSE
-    within = np.abs(error[dense]) <= BAND * data["missing_force_std"].values[dense]
+    within = np.abs(error[dense]) <= STDS * data["missing_force_std"].values[dense]
     return {
         "in_band": float(within.mean()),
         "error": float(np.sqrt((error[dense] ** 2).mean() / (truth[dense] ** 2).mean())),

@@ -13,6 +13,7 @@ from validation.time_records import LOOP, MIXED, TRANSIENT
 
 from tests.measured.test_steadiness import UNSTEADY, only_fault, written
 from wedgesweep.effects import EFFECTS, candidates
+from wedgesweep.figures.diagnosis.marks import STDS
 
 DOCS = Path(__file__).parents[2] / "docs"
 RECORDS, RESULTS = DOCS / "validation-records.jsonl", DOCS / "validation.md"
@@ -145,7 +146,7 @@ def test_an_empirical_force_is_judged_by_the_hidden_one(tmp_path):
     grid = ("force_place", "force_speed")
     found = {
         "missing_force": (grid, force - force.mean() + off - off.mean()),
-        "missing_force_std": (grid, np.full(force.shape, 0.1 / empirical.BAND)),
+        "missing_force_std": (grid, np.full(force.shape, 0.1 / STDS)),
         "missing_force_density": (grid, np.ones(force.shape)),
     }
     data = xr.Dataset(found, {"force_place": places, "force_speed": speeds})

@@ -77,9 +77,8 @@ def _splines(knots: np.ndarray, at: np.ndarray) -> np.ndarray:
 _PLACES, _SPEEDS = nodes(1.0, 1.0)
 _OF_PLACES, _OF_SPEEDS = _knots(_PLACES), _knots(_SPEEDS)
 # Coefficients (n, n) of the splines that are 1 at one node and 0 at the others, a column for each node.
-_THROUGH_PLACES, _THROUGH_SPEEDS = (
-    np.linalg.inv(_splines(_knots(each), each)) for each in (_PLACES, _SPEEDS)
-)
+_THROUGH_PLACES = np.linalg.inv(_splines(_OF_PLACES, _PLACES))
+_THROUGH_SPEEDS = np.linalg.inv(_splines(_OF_SPEEDS, _SPEEDS))
 
 
 def interpolation(places: np.ndarray, speeds: np.ndarray) -> np.ndarray:
@@ -110,7 +109,7 @@ def _polynomials(knots: np.ndarray) -> np.ndarray:
     return np.array(found)
 
 
-_PLACE_KNOTS, _SPEED_KNOTS = _OF_PLACES[3:-4].copy(), _OF_SPEEDS[3:-4].copy()
+_PLACE_KNOTS, _SPEED_KNOTS = _OF_PLACES[3:-4], _OF_SPEEDS[3:-4]
 _PLACE_POLYNOMIALS, _SPEED_POLYNOMIALS = _polynomials(_OF_PLACES), _polynomials(_OF_SPEEDS)
 
 

@@ -137,7 +137,7 @@ def _with_kind(test: Guessed) -> list[Guessed]:
     channels = _compared(channels)
     test = replace(test, run=_without(test.run, channels), kind=kind, reason=reason)
     if kind == TRANSIENT and INPUT not in channels:
-        parts = [(each, *_evenly(test, each)) for part in parts for each in _releases(*part)]
+        parts = [each for part in parts for each in _releases(test, *part)]
     return [replace(test, part=_begun(*each, kind)) for each in parts]
 
 
@@ -157,11 +157,16 @@ def imposed(test: Guessed) -> Guessed:
     return replace(test, run=replace(test.run, channels=as_loop), kind=LOOP, reason=reason, negated=negated)
 
 
-def _releases(part: Part, time: np.ndarray, signals: Mapping[str, np.ndarray]) -> list[Part]:
-    """Parts of a free motion, each of which begins anew."""
-    step = float(time[1] - time[0])
-    starts = [down(float(time[each]), step) for each in released_again(next(iter(signals.values())))]
-    return [Part(*ends) for ends in pairwise([part.start, *starts, part.end])]
+def _releases(
+    test: Guessed, part: Part, time: np.ndarray, signals: dict[str, np.ndarray]
+) -> list[tuple[Part, np.ndarray, dict[str, np.ndarray]]]:
+    """Parts of a free motion, each of which begins anew, with their times and signals."""
+    again = released_again(next(iter(signals.values())))
+    if not again:
+        return [(part, time, signals)]
+    starts = [down(float(time[each]), float(time[1] - time[0])) for each in again]
+    parts = [Part(*ends) for ends in pairwise([part.start, *starts, part.end])]
+    return [(each, *_evenly(test, each)) for each in parts]
 
 
 def _begun(part: Part, time: np.ndarray, signals: Mapping[str, np.ndarray], kind: str) -> Part:

@@ -170,16 +170,19 @@ def stuck_samples(samples: np.ndarray) -> np.ndarray:
         return found
     values = samples[known]
     steps = np.abs(np.diff(values))
-    starts, ends = (
-        np.flatnonzero(np.diff(np.r_[0, (steps == 0.0).astype(int), 0]) == sign) for sign in (1, -1)
-    )
-    long, typical = ends - starts >= STUCK, float(np.median(steps))
-    for start, end in zip(starts[long], ends[long], strict=True):
+    runs, typical = runs_of(steps == 0.0), float(np.median(steps))
+    lengths = runs[:, 1] - runs[:, 0]
+    for start, end in runs[lengths >= STUCK].tolist():
         inside = start > 0 and end < steps.size and values.min() < values[start] < values.max()
         found[known[start + 1 : end + 1]] = inside and steps[end] > JUMP * typical
-    shorter = int((ends - starts)[~long].sum())
+    shorter = int(lengths[lengths < STUCK].sum())
     coarse = max(shorter, int(np.count_nonzero(found))) > RARE * values.size
     return np.zeros(samples.size, bool) if coarse else found
+
+
+def runs_of(marked: np.ndarray) -> np.ndarray:
+    """First sample and end (k, 2) of each run of marked samples (n,)."""
+    return np.flatnonzero(np.diff(np.r_[False, marked, False].astype(int))).reshape(-1, 2)
 
 
 class _Stamps(NamedTuple):

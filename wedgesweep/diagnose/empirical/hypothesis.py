@@ -89,9 +89,8 @@ INSTANT = 1e-9
 SLOW = 1e-2
 
 
-def force_of(data: FitData, values: Values, without: Values, motion: tuple[np.ndarray, float]) -> np.ndarray:
+def force_of(data: FitData, values: Values, without: Values, places: np.ndarray, speed: float) -> np.ndarray:
     """Force (n,) on the mass (N) of effects less that of others at places (n,) (m) and one speed (m/s)."""
-    places, speed = motion
     model = data.model
     rows = [model.record_with(merge(model.effects, each), data.law, 0.0) for each in (values, without)]
     velocity, nothing = np.full(places.size, speed), np.zeros(places.size)
@@ -102,7 +101,7 @@ def force_of(data: FitData, values: Values, without: Values, motion: tuple[np.nd
 def half_step(data: FitData, values: Values, without: Values, ranges: Ranges) -> float:
     """Half the step (N) that the force against the motion makes at zero velocity in the centre."""
     place, speed = np.full(2, ranges.centre), SLOW * ranges.velocity
-    ahead, back = (force_of(data, values, without, (place, side * speed))[0] for side in (1.0, -1.0))
+    ahead, back = (force_of(data, values, without, place, side * speed)[0] for side in (1.0, -1.0))
     return 0.5 * float(back - ahead)
 
 
@@ -113,6 +112,6 @@ def at_nodes(data: FitData, values: Values, without: Values, ranges: Ranges) -> 
     found = np.empty((places.size, speeds.size))
     for j, speed in enumerate(speeds):
         if j != middle:
-            found[:, j] = force_of(data, values, without, (places, speed)) + step * np.sign(speed)
+            found[:, j] = force_of(data, values, without, places, speed) + step * np.sign(speed)
     found[:, middle] = 0.5 * (found[:, middle - 1] + found[:, middle + 1])
     return found, step

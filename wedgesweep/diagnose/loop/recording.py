@@ -22,6 +22,7 @@ from wedgesweep.diagnose.smoothing import LowPass, Motion, chosen_cutoff, contin
 from wedgesweep.effects import channel_delay, force_gain, merge
 from wedgesweep.errors import InputError
 from wedgesweep.measured import TestRecord, quality
+from wedgesweep.measured.signals import runs_of
 from wedgesweep.solvers import imposed_motion
 
 # Below AT_REST standard deviations of its noise the velocity has no sign. Where it stays there for more than
@@ -272,9 +273,8 @@ def at_rest(motion: Motion, low_pass: LowPass) -> np.ndarray:
     """Whether (n,) the mass may rest at or near a sample: its velocity has no sign for a while."""
     speed = np.abs(motion.velocity)
     slow = speed <= max(AT_REST * motion.noise[1], RESTS * float(speed.max()))
-    edges = np.flatnonzero(np.diff(np.r_[False, slow, False].astype(int)))
     found = np.zeros(slow.size, bool)
-    for first, last in zip(edges[::2], edges[1::2], strict=True):
+    for first, last in runs_of(slow).tolist():
         if last - first > low_pass.stride:
             found[max(first - low_pass.stride, 0) : last + low_pass.stride] = True
     return found
