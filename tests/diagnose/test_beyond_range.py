@@ -70,6 +70,15 @@ def test_a_cause_beyond_the_range_is_named(scale):
     assert told["searched"] == [0.5, 2.0]
 
 
+def test_an_interval_holds_a_number_whose_two_parts_are_at_their_ends():
+    """A magnitude with a phase is fitted as two parts, and reaches the corner of their bounds."""
+    model = Search.of(friction_of(1.0), ("input_distortion",)).model("input_distortion")
+    fit = minimise(model, model.evaluate(model.start(None, model.hypothesis.high)), 0)
+    told = parameters(fit)["input_distortion"]["second"]
+    assert told["value"] == pytest.approx(2.0**0.5 * told["searched"][1])
+    assert told["ci95"][0] < told["value"] <= told["ci95"][1]
+
+
 @pytest.mark.acceptance
 def test_a_number_inside_of_its_range_is_told_without_it():
     search, _, found, _ = explain(Search.of(friction_of(1.5), ("friction_level", "viscous_damping")))

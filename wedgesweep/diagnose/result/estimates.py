@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from wedgesweep.diagnose.fit_parameters import PHASE
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.smoothing import TWO_SIDED
 from wedgesweep.effects import EFFECTS
@@ -31,7 +32,9 @@ def parameters(fit: Fit) -> dict[str, dict[str, dict[str, Any]]]:
         if f"{name}.{quantity.key}" in known:
             std = change(quantity, value, value + known[f"{name}.{quantity.key}"][1])
         searched, units = quantity.searched(hypothesis.units), hypothesis.units
-        limits = quantity.wider(units) if name in hypothesis.wider else searched
+        low, high = quantity.wider(units) if name in hypothesis.wider else searched
+        # The two parts of a number with a phase are bounded each by itself.
+        limits = low, high * (sqrt(2.0) if quantity.key + PHASE in here[name] else 1.0)
         ends = interval(quantity, value, TWO_SIDED * std, limits)
         found: dict[str, Any] = {"value": value, "ci95": list(ends)}
         if not (quantity.angle or searched[0] <= value <= searched[1]):
