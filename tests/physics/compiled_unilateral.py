@@ -2,9 +2,10 @@
 
 from wedgesweep.compiled import compiled
 from wedgesweep.hybrid import interface
-from wedgesweep.systems.suspension import filippov, set_valued
+from wedgesweep.systems.suspension import filippov, set_valued, transitions
 from wedgesweep.systems.suspension.modes import HELD, ContactMode
 from wedgesweep.systems.suspension.unilateral import contacts, hybrid, impact, modes, motion
+from wedgesweep.systems.suspension.unilateral.closed import stays_closed
 
 
 @compiled
@@ -40,24 +41,25 @@ def well_posed_where_a_jump_holds(t, y, case):
 
 
 @compiled
-def taken_by_closed(t, y, closed):
-    """Whether bilateral joints would follow a state of the mass, and their mode."""
-    p = closed[0]
-    mode, unique = interface.initial_mode(t, y, p)
-    return not interface.leaves(y, mode, p), mode, unique
+def bilateral_mode(t, y, opening):
+    """Whether a state of the mass is in a mode of bilateral joints, and their mode."""
+    p = opening[0]
+    mode, unique = transitions.initial_mode(t, y, p)
+    return unique and stays_closed(y, mode, p), mode
 
 
 @compiled
 def contacts_at(t, y, opening):
-    """Mode of unilateral joints with both contacts closed, and whether it is unique."""
-    return interface.initial_mode(t, (y[0], y[1], 0.0, 0.0, 0.0, 0.0), opening[0])
+    """Mode of contacts that are closed and may open, and whether it is unique."""
+    state, p = (y[0], y[1], 0.0, 0.0, 0.0, 0.0), opening[0]
+    return modes.resolve(t, state, modes.touching(state, p), 0, p)
 
 
 @compiled
-def breakaway_inputs(y, closed):
+def breakaway_inputs(y, opening):
     """Base accelerations below and above which a bolster at rest breaks away; NaN if a face opens before."""
-    forward = set_valued.breakaway_input(y, 1, 0, closed[0])
-    return forward, set_valued.breakaway_input(y, -1, 0, closed[0])
+    forward = set_valued.breakaway_input(y, 1, 0, opening[0])
+    return forward, set_valued.breakaway_input(y, -1, 0, opening[0])
 
 
 @compiled

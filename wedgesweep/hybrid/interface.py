@@ -202,11 +202,10 @@ def expected_event(forces, t, y, mode, p):
 
 @optional
 def follow(state, stop, p, keeping, recorder, work):
-    """Follow a mode by a method of the system's own to its event or ``stop``, or several, one by one.
+    """Follow a mode by a method of the system's own to its event or ``stop``.
 
-    Returns whether it has one, the state reached, and the event, NO_EVENT or FAILED. It may stop without an
-    event, even where it began, in a mode that ``leaves`` hands over. ``work``: tolerance and counts of the
-    run (``integrate.Workspace``), among them that of the events passed.
+    Returns whether it has one, the state reached, and the event, NO_EVENT or FAILED. ``work``: tolerance and
+    counts of the run (``integrate.Workspace``).
     """
     return False, state, NO_EVENT
 
@@ -302,18 +301,3 @@ def growth(by_state, p):
 @required
 def stiff_error(error, mode, p):
     """Largest error of a velocity on which the mode is stiff, over the width of the stiff range."""
-
-
-# Two systems may take turns in following a motion: one that holds while contacts are closed, and one for all
-# motions. Both write these.
-
-
-@optional
-def leaves(y, mode, p):
-    """Whether a mode is for the other system to follow."""
-    return False
-
-
-@required
-def taken_over(t, y, mode, p):
-    """Mode with which a system goes on, and whether it is unique; ``mode``: an array, the other system's."""

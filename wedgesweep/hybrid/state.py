@@ -2,9 +2,9 @@
 
 from typing import Any, NamedTuple
 
-# A run ends with OK or one of LOCKED to HANDED_OVER; a mode with the number of an event, from 0 up, or with a
-# number below 0. HANDED_OVER: another system follows the motion from there on (see period_map.run_case).
-OK, NO_EVENT, LOCKED, FAILED, CHATTERING, HANDED_OVER = 0, -1, -2, -3, -4, -5
+# A run ends with OK or one of LOCKED to CHATTERING; a mode with the number of an event, from 0 up, or with a
+# number below 0.
+OK, NO_EVENT, LOCKED, FAILED, CHATTERING = 0, -1, -2, -3, -4
 
 
 class State(NamedTuple):

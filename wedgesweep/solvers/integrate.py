@@ -24,7 +24,6 @@ from wedgesweep.hybrid.interface import (
     follow,
     holds,
     initial_mode,
-    leaves,
     linear,
     never_locks,
     opened,
@@ -39,7 +38,7 @@ from wedgesweep.hybrid.interface import (
 from wedgesweep.hybrid.linear_modes import Equations, follow_linear, forget, room
 from wedgesweep.hybrid.recorded_step import record_step
 from wedgesweep.hybrid.search import Bracket, minimum, searched, zero, zero_after_start
-from wedgesweep.hybrid.state import CHATTERING, FAILED, HANDED_OVER, LOCKED, NO_EVENT, OK, State
+from wedgesweep.hybrid.state import CHATTERING, FAILED, LOCKED, NO_EVENT, OK, State
 from wedgesweep.hybrid.step import SHORTEST, dense_output, step_limit
 from wedgesweep.solvers import explicit, implicit
 
@@ -289,7 +288,7 @@ def initial_state(t, y, p):
 def integrate(state, keep_from, stop, p, recorder, work):
     """Follow a run from event to event up to ``stop``, and record the part from ``keep_from`` (s) on.
 
-    Returns how it ended (OK, LOCKED, FAILED, CHATTERING, HANDED_OVER) and the state reached.
+    Returns how it ended (OK, LOCKED, FAILED, CHATTERING) and the state reached.
     """
     periods = (stop - state.t) * fastest(p) / (2.0 * pi)
     if periods > LONGEST_WINDOW:
@@ -298,19 +297,16 @@ def integrate(state, keep_from, stop, p, recorder, work):
     forget(work.equations)
     work.constants[0] = nan
     while state.t < stop:
-        if leaves(state.y, state.mode, p):
-            return HANDED_OVER, state
         keeping = state.t >= keep_from
         end = stop if keeping else keep_from
-        done, state, number = follow(state, end, p, keeping, recorder, work)
-        if not done and linear(state.mode, p):
+        if linear(state.mode, p):
             done, state, number = follow_linear(state, end, p, keeping, recorder, work)
+        else:
+            done, state, number = follow(state, end, p, keeping, recorder, work)
         if not done:
             state, number = _integrate_mode(state, end, p, keeping, recorder, work)
-        if number == NO_EVENT and work.counts[2] <= limit:
-            continue
         if number == NO_EVENT:
-            return CHATTERING, state
+            continue
         if number < NO_EVENT:
             return number, state
         if keeping:

@@ -2,19 +2,15 @@
 
 Callers (shooting, batches) get records as bytes and the map as an address, so that they are compiled once for
 the records of all systems and kits.
-
-A suspension whose joints can open is followed by two systems in turn: while both contacts are closed by that
-of bilateral joints, which has fewer states and is faster; else by the one with gaps.
 """
 
 from functools import cache
-from math import isnan
 from typing import Any, NamedTuple
 
 import numpy as np
 from numba import types
 
-from wedgesweep.compiled import Pointer, borrowed, by_record, compiled, inlined, inner, record_in
+from wedgesweep.compiled import Pointer, borrowed, compiled, inlined, inner, record_in
 from wedgesweep.hybrid import accumulators
 from wedgesweep.hybrid.interface import (
     clocks,
@@ -24,27 +20,22 @@ from wedgesweep.hybrid.interface import (
     provided,
     repeats,
     scales,
-    taken_over,
 )
 from wedgesweep.hybrid.recorder import Recorder
-from wedgesweep.hybrid.state import CHATTERING, HANDED_OVER, LOCKED, State
+from wedgesweep.hybrid.state import LOCKED
 from wedgesweep.hybrid.vectors import store, vector
-from wedgesweep.solvers.integrate import EVENTS_PER_PERIOD, Workspace, initial_state, integrate, workspace
+from wedgesweep.solvers.integrate import Workspace, initial_state, integrate, workspace
 from wedgesweep.solvers.period_detection import LONGEST_PERIOD
-from wedgesweep.systems import while_closed
 
-# Room for the states and for the numbers of a mode of any system.
-MOST_STATES, MOST_MODE = 32, 16
-# Places in what one system hands over to another: time (s), next step (s), last event; from MODE on the mode.
-TIME, STEP, EVENT, MODE = range(4)
+# Room for the states of any system.
+MOST_STATES = 32
 
 
 class Memory(NamedTuple):
     """Room for a run and for what is recorded of it; see ``memory`` and ``Recorder``.
 
     ``reached`` (1,): time (s) at which the last run ended; ``free`` (MOST_STATES,): which states may take
-    other values near the one reached; ``handed`` (MODE + MOST_MODE,): from where another system goes on, with
-    a time of NaN if none does.
+    other values near the one reached.
     """
 
     work: Workspace
@@ -55,7 +46,6 @@ class Memory(NamedTuple):
     sticks: Any
     reached: Any
     free: Any
-    handed: Any
     acceleration: Any
     samples_per_period: int
     summed: bool
@@ -86,41 +76,11 @@ def memory(
         np.zeros(n, np.bool_),
         np.zeros(1),
         np.zeros(MOST_STATES, np.bool_),
-        np.full(MODE + MOST_MODE, np.nan),
         np.zeros(n if acceleration else 0),
         samples_per_period,
         summed,
         energies,
     )
-
-
-def _first_state(start, y, handed, p):
-    """State in which a run begins, or goes on from another system, and whether it is unique."""
-
-
-@inlined
-def _handed_state(start, y, handed, p):
-    if isnan(handed[TIME]):
-        return initial_state(start, y, p)
-    mode, unique = taken_over(handed[TIME], y, handed[MODE:], p)
-    return State(handed[TIME], y, mode, np.int64(handed[EVENT]), handed[STEP]), unique
-
-
-by_record(
-    _first_state,
-    lambda fields: (
-        _handed_state
-        if provided(taken_over, fields)
-        else (lambda start, y, handed, p: initial_state(start, y, p))
-    ),
-)
-
-
-@inlined
-def _hand_over(state, handed):
-    handed[TIME], handed[STEP], handed[EVENT] = state.t, state.step, state.last_event
-    for i in range(len(state.mode)):
-        handed[MODE + i] = state.mode[i]
 
 
 @inlined
@@ -140,11 +100,9 @@ def _run_periods(first, periods, y, p, keeping, memory):
     )
     keep_from = start if keeping else stop
     outcome = LOCKED
-    state, unique = _first_state(start, vector(y, scales(p)), memory.handed, p)
+    state, unique = initial_state(start, vector(y, scales(p)), p)
     if unique:
         outcome, state = integrate(state, keep_from, stop, p, recorder, memory.work)
-    if outcome == HANDED_OVER:
-        _hand_over(state, memory.handed)
     store(state.y, y)
     memory.free[:] = False
     store(free(state.y, p), memory.free)
@@ -168,9 +126,7 @@ class Cases(NamedTuple):
 
     ``records`` (n, bytes) for ``period_map``; ``scales`` (n, S): natural sizes of the states, ``clocks``
     (n, S): whether they only count time; ``cycle`` (n,): period of the input (s), ``repeats`` (n,): whether
-    all of the input repeats after it. ``impacts``: whether velocities may jump. ``turns``: whether
-    ``closed_map`` follows cases, with ``closed_records``, while their contacts are closed; that system has
-    the first ``closed_states`` of the states.
+    all of the input repeats after it. ``impacts``: whether velocities may jump.
     """
 
     period_map: Any
@@ -180,35 +136,22 @@ class Cases(NamedTuple):
     cycle: Any
     repeats: Any
     impacts: bool
-    turns: Any
-    closed_map: Any
-    closed_records: Any
-    closed_states: int
 
 
 def prepared(records: np.ndarray) -> Cases:
     """Cases of compact records, shape (n,)."""
-    n, size, closed = len(records), count_states(records), while_closed(records)
-    smaller = records if closed is None else closed
+    n, size = len(records), count_states(records)
     found = Cases(
         period_map(records.dtype),
-        _as_bytes(records),
+        records.view(np.uint8).reshape(n, -1),
         np.zeros((n, size)),
         np.zeros((n, size), np.bool_),
         np.zeros(n),
         np.zeros(n, np.bool_),
         provided(impact, dict(records.dtype.fields or {})),
-        closed is not None,
-        period_map(smaller.dtype),
-        _as_bytes(smaller),
-        count_states(smaller),
     )
     describe(records, found.scales, found.clocks, found.cycle, found.repeats)
     return found
-
-
-def _as_bytes(records: np.ndarray) -> np.ndarray:
-    return records.view(np.uint8).reshape(len(records), -1)
 
 
 @compiled
@@ -231,23 +174,9 @@ def describe(records, of_states, counts, period, repeated):
 def run_case(cases, number, first, periods, y, keeping, memory):
     """Run a case from phase 0 of period ``first``; y (n,) is replaced by the state reached.
 
-    Returns how the run ended. It begins with the system for closed contacts, if the case has one and gaps and
-    their rates are zero.
+    Returns how the run ended.
     """
-    memory.handed[TIME] = np.nan
-    closed = cases.turns
-    for i in range(cases.closed_states, y.size):
-        closed = closed and y[i] == 0.0
-    for _ in range(EVENTS_PER_PERIOD * (1 + periods)):
-        if closed:
-            record = cases.closed_records[number]
-            outcome = cases.closed_map(first, periods, y, record, keeping, memory)
-        else:
-            outcome = cases.period_map(first, periods, y, cases.records[number], keeping, memory)
-        if outcome != HANDED_OVER:
-            return outcome
-        closed = not closed
-    return CHATTERING
+    return cases.period_map(first, periods, y, cases.records[number], keeping, memory)
 
 
 @compiled

@@ -1,8 +1,7 @@
 """scipy's Radau, mode by mode: it never steps across a corner of the equations.
 
 Each call of ``solve_ivp`` follows one mode until one of its event functions reaches zero. Right-hand side and
-event functions are compiled; what remains is scipy's. Two systems take turns in following a suspension whose
-joints can open, as in period_map.py.
+event functions are compiled; what remains is scipy's.
 """
 
 from cmath import isfinite
@@ -21,7 +20,7 @@ from wedgesweep.hybrid import accumulators
 from wedgesweep.solvers import radau_system as system
 from wedgesweep.solvers.integrate import EVENTS_PER_PERIOD
 from wedgesweep.solvers.trajectory import CaseError, Trajectory, Window, empty_samples
-from wedgesweep.systems import compact, while_closed
+from wedgesweep.systems import compact
 
 # A mode of the system, a tuple of integers.
 Mode = Any
@@ -118,21 +117,15 @@ def solve(
     return _Run(parameters, window, rtol, time_limit).trajectory(start, settled)
 
 
-def _taking_turns(case: np.ndarray) -> list[np.ndarray]:
-    """A compact record, and the record for closed contacts if it has one and no state of it can lock."""
-    closed = while_closed(case)
-    return [case] if closed is None or not system.description(case)[2] else [case, closed]
-
-
 class _Run:
     """A run of one case: its current state, and what it has kept."""
 
     def __init__(self, parameters: np.ndarray, window: Window, rtol: float, time_limit: float) -> None:
         self.window, self.rtol = window, rtol
-        self.cases = _taking_turns(compact(parameters))
+        self.case = compact(parameters)
         self.deadline = perf_counter() + time_limit
         self.time_limit = time_limit
-        self.all_scales, fastest, _ = system.description(self.cases[0])
+        self.scales, fastest = system.description(self.case)
         self.period = 2.0 * pi / fastest
         self.statistics: Counter[str] = Counter(rate_evaluations=0, steps=0, switches=0)
         self.sums = accumulators.empty()
@@ -141,41 +134,20 @@ class _Run:
 
     def trajectory(self, start: Sequence[float] | np.ndarray, settled: float | None) -> Trajectory:
         """Follow the modes to the end of the window."""
-        y = self._full(np.asarray(start, dtype=float)[: self.all_scales.size])
-        self._use(self.cases[-1])
-        if y[self.scales.size :].any():
-            self._use(self.cases[0])
-        y = y[: self.scales.size]
+        y = np.zeros(self.scales.size)
+        y[: len(start)] = start[: y.size]
         mode, unique = system.initial_mode(0.0, y, self.case)
         self._require(unique, 0.0)
-        y, mode = self._settle(*self._handed_over(0.0, y, mode), settled)
+        y, mode = self._settle(y, mode, settled)
         self.samples = empty_samples(self.window.sample_times)
         self._follow(self.window.keep, self.window.end, y, mode)
         return Trajectory(self.samples, self.sums, self.window.periods, dict(self.statistics))
-
-    def _use(self, case: np.ndarray) -> None:
-        """Follow the motion from here on with the system of another record."""
-        self.case, self.scales = case, system.description(case)[0]
-
-    def _full(self, y: np.ndarray) -> np.ndarray:
-        """The state in the larger of two systems: the gaps of closed contacts are 0."""
-        return np.append(y, np.zeros(self.all_scales.size - y.size))
-
-    def _handed_over(self, t: float, y: np.ndarray, mode: Mode) -> tuple[np.ndarray, Mode]:
-        """State and mode in the system that follows the mode."""
-        if len(self.cases) == 1 or not system.leaves(y, mode, self.case):
-            return y, mode
-        self._use(self.cases[0 if self.case is self.cases[-1] else -1])
-        y = self._full(y)[: self.scales.size]
-        mode, unique = system.taken_over(t, y, mode, self.case)
-        self._require(unique, t)
-        return y, mode
 
     def _settle(self, y: np.ndarray, mode: Mode, settled: float | None) -> tuple[np.ndarray, Mode]:
         """Follow the modes to the kept part of the window, which begins earlier if the state repeats."""
         if settled is None:
             return self._follow(0.0, self.window.keep, y, mode)
-        most, close = self.window.settle_periods, self.all_scales * settled
+        most, close = self.window.settle_periods, self.scales * settled
         self.window = replace(self.window, settle_periods=0)
         for coarseness, last in ((COARSER, most - most // 4), (1.0, most)):
             self.rtol *= coarseness
@@ -183,7 +155,7 @@ class _Run:
                 before, began = y, self.window.keep
                 self.window = replace(self.window, settle_periods=periods)
                 y, mode = self._follow(began, self.window.keep, y, mode)
-                if np.all(np.abs(self._full(y) - self._full(before)) < close):
+                if np.all(np.abs(y - before) < close):
                     break
             self.rtol /= coarseness
         return y, mode
@@ -296,7 +268,7 @@ class _Run:
         sums = self.sums if t >= self.window.keep else None
         y, mode, unique = system.transition(t, y, mode, event, self.case, sums)
         self._require(unique, t)
-        return self._handed_over(t, y, mode)
+        return y, mode
 
     def _check(self, result: Any) -> None:
         self.statistics["rate_evaluations"] += result.nfev

@@ -24,32 +24,16 @@ FINE, LOCKED, MISSED = range(3)
 
 @compiled
 def description(case):
-    """Natural sizes of the states (n,), highest angular frequency of the input (rad/s), ``never_locks``."""
+    """Natural sizes of the states (n,), and highest angular frequency of the input (rad/s)."""
     size = np.empty(len(interface.scales(case[0])))
     store(interface.scales(case[0]), size)
-    return size, interface.fastest(case[0]), interface.never_locks(case[0])
+    return size, interface.fastest(case[0])
 
 
 @compiled
 def initial_mode(t, y, case):
     """Mode at the start of a run, and whether it is well-posed."""
     return interface.initial_mode(t, vector(y, interface.scales(case[0])), case[0])
-
-
-@compiled
-def leaves(y, mode, case):
-    """Whether a mode is for the other system of two that take turns."""
-    return interface.leaves(vector(y, interface.scales(case[0])), mode, case[0])
-
-
-@compiled
-def _taken_over(t, y, mode, case):
-    return interface.taken_over(t, vector(y, interface.scales(case[0])), mode, case[0])
-
-
-def taken_over(t: float, y: np.ndarray, mode: Any, case: np.ndarray) -> tuple:
-    """Mode with which a system goes on from a mode of the other one, and whether it is unique."""
-    return _taken_over(t, y, np.array(mode, dtype=float), case)
 
 
 @compiled

@@ -31,13 +31,6 @@ def compact(parameters: np.ndarray) -> np.ndarray:
     return parameters
 
 
-def while_closed(records: np.ndarray) -> np.ndarray | None:
-    """Compact records for the system that follows them while their contacts are closed; None without one."""
-    if "suspension" not in (records.dtype.names or ()):
-        return None
-    return suspension_parameters.while_closed(records)
-
-
 def is_oscillator(parameters: np.ndarray) -> bool:
     """Whether records are those of the oscillator."""
     return "oscillator" in (parameters.dtype.names or ())

@@ -15,7 +15,6 @@ from wedgesweep.systems.suspension import (  # noqa: F401
     sticking,
     stiffness,
     transitions,
-    while_closed,
 )
 from wedgesweep.systems.suspension.energy import damping_power, friction_power, supplied_power
 from wedgesweep.systems.suspension.faces import column_slip

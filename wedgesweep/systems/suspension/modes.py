@@ -38,13 +38,6 @@ class ContactMode(NamedTuple):
 
 
 @inlined
-def mode_of(n):
-    """The mode whose numbers are in an array."""
-    first = int(n[0]), int(n[1]), int(n[2]), int(n[3])
-    return ContactMode(*first, int(n[4]), int(n[5]), int(n[6]), int(n[7]))
-
-
-@inlined
 def stuck(mode, p):
     """Whether set-valued friction holds the bolster."""
     return p.friction.set_valued and mode.column == 0

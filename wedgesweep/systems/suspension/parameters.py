@@ -73,13 +73,10 @@ BILATERAL, UNILATERAL = JOINTS = ("bilateral", "unilateral")
 RESTITUTION = lift_off.EFFECT.quantities[0]
 # Share of the band of rest that a wedge holds (rest.py): the effect jamming.
 LOCKED_IN = jamming.EFFECT.quantities[0]
-# Mark of records of bilateral joints: they also follow unilateral ones while both contacts are closed.
-TURNS: list[tuple] = [("while_closed", np.int64)]
 
 # Kits of parts, by the effects with mechanics of their own that they have room for: none; those that
-# ``effects.register`` added; all; none, and those that go with unilateral joints, for joints that can open;
-# the latter while both contacts are closed.
-BASE, OWN, ALL, JOINTS_OPEN, JOINTS_OPEN_WITH_EFFECTS, CLOSED_WITH_EFFECTS = range(6)
+# ``effects.register`` added; all; none, and those that go with unilateral joints, for joints that can open.
+BASE, OWN, ALL, JOINTS_OPEN, JOINTS_OPEN_WITH_EFFECTS = range(5)
 OPENING = JOINTS_OPEN, JOINTS_OPEN_WITH_EFFECTS
 # Velocity (m/s) at which regularised Coulomb friction reaches mu_d, on the bench (see natural_units).
 REGULARISED_VELOCITY = 1e-6
@@ -98,12 +95,11 @@ def _kits(names: tuple[str, ...], series: bool) -> tuple[np.dtype, ...]:
     opens = records.effect_parts([lift_off.NAME])
     part = records.SERIES if series else []
     return (
-        _dtype(TURNS + part, plain),
+        _dtype(part, plain),
         _dtype(part, own + plain),
         _dtype(part, all_but_opening),
         _dtype(opens + part, plain),
         _dtype(opens + part, go_with_opening),
-        _dtype(TURNS + part, go_with_opening),
     )
 
 
@@ -320,19 +316,6 @@ def compact(rows: np.ndarray) -> np.ndarray:
     """Full records, shape (n,), as records of the smallest kit for all of them, for compiled code."""
     kits = _kits(effect_names(), bool(excitation.has_series(rows).any()))
     return records.converted(rows, kits[int(rows["geometry"]["kit"].max(initial=BASE))])
-
-
-def while_closed(rows: np.ndarray) -> np.ndarray | None:
-    """Compact records of unilateral joints as those of bilateral ones, which follow them while closed.
-
-    None for other records.
-    """
-    names = rows.dtype.names or ()
-    if lift_off.NAME not in names:
-        return None
-    plain = rows["geometry"]["kit"].max(initial=BASE) == JOINTS_OPEN
-    kits = _kits(effect_names(), records.SERIES[0][0] in names)
-    return records.converted(rows, kits[BASE if plain else CLOSED_WITH_EFFECTS])
 
 
 def driven_mass(rows: np.ndarray) -> np.ndarray:

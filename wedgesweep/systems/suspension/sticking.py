@@ -8,7 +8,8 @@ from math import asin, ceil, inf, pi
 
 from wedgesweep import excitation, sampled_input
 from wedgesweep.compiled import inlined, inner, term
-from wedgesweep.effects import fixture_resonance, input_distortion, states, stray_vibration
+from wedgesweep.effects import fixture_resonance, input_distortion, stray_vibration
+from wedgesweep.hybrid.interface import free
 from wedgesweep.hybrid.recorder import record_constant
 from wedgesweep.hybrid.state import NO_EVENT, State
 from wedgesweep.systems.suspension.modes import COLUMN, VELOCITY, stuck
@@ -99,11 +100,11 @@ def _breakaway(forward, backward, t, stop, p):
 
 
 @inner
-def _waits_for_input(mode, p):
+def _waits_for_input(y, mode, p):
     """Whether only the motion of the base can end a mode, by what is known of it in advance."""
     if not stuck(mode, p) or stray_vibration.acts(p) or input_distortion.acts(p):
         return False
-    moving, rests = states.active(p), True
+    moving, rests = free(y, p), True
     for i in range(VELOCITY + 1, len(moving)):
         rests = rests and not moving[i]
     return rests
@@ -112,7 +113,7 @@ def _waits_for_input(mode, p):
 @inlined
 def follow_stuck(state, stop, p, keeping, recorder, work):
     """As ``interface.follow``, for a bolster that sticks."""
-    if not _waits_for_input(state.mode, p):
+    if not _waits_for_input(state.y, state.mode, p):
         return False, state, NO_EVENT
     forward, backward, loaded = _breakaway_range(state.y, state.mode.segment, p)
     # Outside the range it rests between joints that pull: these have a range of their own.

@@ -4,6 +4,7 @@ from wedgesweep import friction
 from wedgesweep.compiled import inlined, inner
 from wedgesweep.effects import ageing, directional_friction, hooks, presliding, travel
 from wedgesweep.excitation import acceleration
+from wedgesweep.hybrid import interface
 from wedgesweep.hybrid.vectors import replaced, weighted
 from wedgesweep.systems.suspension import modes
 from wedgesweep.systems.suspension.events import BOLSTER_NORMAL, CLOCK, COLUMN_NORMAL, TRAVEL
@@ -60,7 +61,7 @@ def _velocity_soon(t, y, mode, p):
     """
     moment = LOOK_AHEAD / p.input.omega
     for i in range(STEPS_FROM_REST):
-        y = weighted(y, moment, (1.0,), (rate(t + (i + 0.5) * moment, y, mode, p)[0],))
+        y = weighted(y, moment, (1.0,), (interface.rate(t + (i + 0.5) * moment, y, mode, p)[0],))
     return y[VELOCITY]
 
 
@@ -117,7 +118,7 @@ def _after_zero_force(t, y, mode, p):
     are those of a moment later, and of later moments as long as a force is no more than rounding errors.
     """
     ahead = LOOK_AHEAD / p.input.omega
-    slope = rate(t, y, mode, p)[0]
+    slope = interface.rate(t, y, mode, p)[0]
     found, certain = mode, True
     for _ in range(4):
         later = weighted(y, ahead, (1.0,), (slope,))

@@ -1,8 +1,8 @@
 """The suspension with unilateral joints as a hybrid system; see hybrid/interface.py.
 
-While both contacts are closed its equations and events are those of bilateral joints. Where they surely carry
-load bilateral joints themselves follow the motion (see while_closed.py). Records of this system have a part
-``lift_off`` beside those of the suspension.
+While both contacts are closed its equations and events are those of bilateral joints; where they surely carry
+load (closed.py) so are its methods and transitions. Records of this system have a part ``lift_off`` beside
+those of the suspension.
 """
 
 from math import inf, nan, sqrt
@@ -16,7 +16,9 @@ from wedgesweep.hybrid.interface import implement
 from wedgesweep.hybrid.state import NO_EVENT
 from wedgesweep.hybrid.vectors import replaced
 from wedgesweep.systems.suspension import energy, events, filippov, newton, transitions
+from wedgesweep.systems.suspension import follow as bilateral
 from wedgesweep.systems.suspension.hybrid import forces_and_power
+from wedgesweep.systems.suspension.hybrid import linear as slips_linearly
 from wedgesweep.systems.suspension.modes import (
     BOLSTER,
     COLUMN,
@@ -26,11 +28,11 @@ from wedgesweep.systems.suspension.modes import (
     X,
     branch,
     held,
-    mode_of,
     with_branch,
 )
 from wedgesweep.systems.suspension.newton import Accelerations
 from wedgesweep.systems.suspension.unilateral import contacts, impact
+from wedgesweep.systems.suspension.unilateral.closed import stays_closed
 from wedgesweep.systems.suspension.unilateral.contacts import bolster_gap, bolster_slip
 from wedgesweep.systems.suspension.unilateral.modes import (
     Touching,
@@ -58,7 +60,6 @@ from wedgesweep.systems.suspension.unilateral.motion import (
     velocities,
     with_gaps,
 )
-from wedgesweep.systems.suspension.while_closed import stays_closed
 
 # Places of the event functions as for bilateral joints, with the gaps in place of the sign of z' and of the
 # time at rest. The gaps are not a pair, as one of them may close right after the other.
@@ -303,6 +304,16 @@ def event(place, t, y, mode, p, out):
 @inner
 def initial_mode(t, y, p):
     """Mode in which a run begins, and whether it is unique."""
+    if column_touches(y) and bolster_touches(y):
+        mode, unique = transitions.initial_mode(t, y, p)
+        if unique and stays_closed(y, mode, p):
+            return mode, True
+    return _of_state(t, y, p)
+
+
+@inlined
+def _of_state(t, y, p):
+    """The mode of a state whose contacts may open, and whether it is unique."""
     return resolve(t, y, touching(y, p), travel.segment_at(y[X], p), p)
 
 
@@ -331,7 +342,7 @@ def _at_rest(mode, place):
 @inner
 def well_posed(t, y, mode, p):
     """Whether exactly one mode is possible."""
-    if p.geometry.always_well_posed:
+    if p.geometry.always_well_posed or stays_closed(y, mode, p):
         return True
     if held(mode):
         return transitions.well_posed(t, y, mode, p)
@@ -364,7 +375,37 @@ def _after_slip(t, y, mode, place, p):
 @implement(interface.transition, UNILATERAL)
 @inner
 def transition(t, y, mode, place, p):
-    """State and mode after an event, and whether they are unique (if not: locked)."""
+    """State and mode after an event, and whether they are unique (if not: locked).
+
+    Joints that can open lock where bilateral ones do not, and the other way round: a normal force that pulls
+    is no solution. Where bilateral joints know of none or of several modes, the others have to find it.
+    """
+    if stays_closed(y, mode, p):
+        y, found, unique = transitions.transition(t, y, mode, place, p)
+        if not (unique and stays_closed(y, found, p)):
+            found, unique = _opening(t, y, found, unique, p)
+        return y, found, unique
+    return _of_opening(t, y, mode, place, p)
+
+
+@inner
+def _opening(t, y, mode, unique, p):
+    """Mode in place of one in which bilateral joints do not surely carry load, and whether it is unique.
+
+    A mode in which a jump of friction holds a velocity is the same for both, if bilateral joints are sure of
+    it.
+    """
+    if p.friction.set_valued:
+        return _of_state(t, y, p)
+    if held(mode) and closed(mode) and unique:
+        return mode, True
+    contact = Touching(True, True, mode.column, mode.bolster, mode.guide)
+    return resolve(t, y, without_jump(t, y, contact, mode.segment, p), mode.segment, p)
+
+
+@inner
+def _of_opening(t, y, mode, place, p):
+    """As ``transition``, from a mode in which a contact is open, or may open."""
     if place in (TRAVEL, TRAVEL + 1):
         return y, replaced(mode, SEGMENT, travel.next_segment(mode.segment, place % 2, p)), True
     if place in (COLUMN_CLOSES, BOLSTER_CLOSES):
@@ -418,42 +459,20 @@ def powers(t, y, mode, p):
     return power + energy.damping_power(y, p), supplied, column, bolster
 
 
+# Methods of bilateral joints
+
+
 @implement(interface.follow, UNILATERAL)
 @inlined
 def follow(state, stop, p, keeping, recorder, work):
-    """There is none, unlike for the bilateral joints whose records these extend."""
+    """Those of bilateral joints, while both contacts surely carry load."""
+    if stays_closed(state.y, state.mode, p):
+        return bilateral.follow(state, stop, p, keeping, recorder, work)
     return False, state, NO_EVENT
-
-
-# Turns with bilateral joints
 
 
 @implement(interface.linear, UNILATERAL)
 @inlined
 def linear(mode, p):
-    """Contacts may open: each has states of its own."""
-    return False
-
-
-@implement(interface.leaves, UNILATERAL)
-@inlined
-def leaves(y, mode, p):
-    """Whether bilateral joints can follow the mode."""
-    return p.geometry.opens != 0 and stays_closed(y, mode, p)
-
-
-@implement(interface.taken_over, UNILATERAL)
-@inner
-def taken_over(t, y, mode, p):
-    """Mode where bilateral joints cannot tell whether both contacts stay closed, and whether it is unique.
-
-    A mode in which a jump of friction holds a velocity is the same in both systems, if bilateral joints are
-    sure of it.
-    """
-    now = mode_of(mode)
-    if p.friction.set_valued:
-        return initial_mode(t, y, p)
-    if held(now) and closed(now):
-        return now, True
-    contact = Touching(True, True, now.column, now.bolster, now.guide)
-    return resolve(t, y, without_jump(t, y, contact, now.segment, p), now.segment, p)
+    """Whether two closed contacts slip under constant friction: no state of such a case can lock."""
+    return p.geometry.opens and closed(mode) and slips_linearly(mode, p)

