@@ -437,6 +437,17 @@ def test_groups_of_a_recorder_are_runs(tmp_path):
     assert [np.ptp(test.displacement) for test in found.tests] == pytest.approx([0.02, 0.04, 0.06], rel=0.05)
 
 
+def test_structures_of_an_array_are_runs(tmp_path):
+    """Each with its time, and a matrix of its channels in a structure within."""
+    t, d, f = loop()
+    kinds = [("time", object), ("signals", object)]
+    runs = [(t, {"values": np.column_stack([size * d, size * f])}) for size in (1.0, 2.0, 3.0)]
+    savemat(tmp_path / "one.mat", {"data": {"test": np.array(runs, kinds)[None], "specimen": "RFD"}})
+    found = begun(tmp_path, tmp_path / "one.mat")
+    sizes = [(np.ptp(test.displacement), np.ptp(test.force)) for test in found.tests]
+    assert np.array(sizes) == pytest.approx(np.outer((1, 2, 3), (1e-3 * np.ptp(d), np.ptp(f))))
+
+
 def test_a_time_that_begins_anew_parts_runs(tmp_path):
     """Each is a mass that is held for half a second before it is let go."""
     t, x = decay()
@@ -478,6 +489,56 @@ def test_what_stands_for_a_force_is_neither_a_count_nor_a_command(tmp_path, head
     text(tmp_path / "one.csv", np.arange(t.size), 1e6 * t, d, d, f, 7.0 + 0.0 * t, header=header)
     found = begun(tmp_path, tmp_path / "one.csv").columns
     assert (found["displacement"]["column"], found["force"]["column"]) == columns
+
+
+def test_a_bridge_and_a_clock_of_pandas_are_known(tmp_path):
+    t, d, f = loop()
+    rows = [f"0 days 00:00:{a:09.6f},{b:.5f},{c:.6f}" for a, b, c in zip(t, d, 0.01 * f, strict=True)]
+    (tmp_path / "one.csv").write_text("\n".join([",Weg [mm],Brücke [mV/V]", *rows]))
+    found = begun(tmp_path, tmp_path / "one.csv")
+    assert (found.tests[0].kind, found.tests[0].sampling_rate) == ("loop", pytest.approx(RATE))
+    assert "how many N are 1 mV/V" in (tmp_path / "measured.toml").read_text()
+
+
+def test_a_table_of_runs_is_no_record(tmp_path):
+    text(tmp_path / "one.csv", *decay(), header="time_s,angle_rev")
+    text(tmp_path / "runs.csv", np.arange(20.0), np.linspace(20, 60, 20), header="run,release_deg")
+    found = begun(tmp_path, tmp_path / "one.csv", tmp_path / "runs.csv")
+    assert [test.file for test in found.tests] == ["one.csv"]
+    assert np.ptp(found.tests[0].displacement) == pytest.approx(20 * 2.0 * np.pi, rel=0.05)
+    assert (
+        "left out, as they have too few numbers for records: runs.csv"
+        in (tmp_path / "measured.toml").read_text()
+    )
+
+
+def test_velocity_and_displacement_tell_the_rate(tmp_path):
+    t, d, f = loop()
+    velocity = np.gradient(50.0 * np.sin(2.0 * np.pi * 1.3 * t), t)
+    text(tmp_path / "one.csv", d / 25.4, velocity / 25.4, f, header="Stroke (in),Speed (in/sec),Force (N)")
+    assert begun(tmp_path, tmp_path / "one.csv").tests[0].sampling_rate == pytest.approx(RATE, rel=0.005)
+
+
+def test_noise_beside_a_motion_is_no_force(tmp_path):
+    t, x = decay()
+    np.save(tmp_path / "one.npy", np.column_stack([t, x, np.random.default_rng(1).normal(size=t.size)]))
+    found = begun(tmp_path, tmp_path / "one.npy")
+    assert (found.tests[0].kind, [*found.tests[0].responses]) == ("transient", ["displacement"])
+
+
+def test_a_steady_motion_is_without_run_up_and_run_down(tmp_path):
+    """Whose growth makes lines beside that of the frequency: their common divisor is none of the motion."""
+    t = np.arange(0.0, 24.0, 0.005)
+    base = np.clip(np.minimum(t / 3.0, (24.0 - t) / 2.0), 0.0, 1.0) * np.sin(2.0 * np.pi * 6.5 * t)
+    natural = 2.0 * np.pi * 5.0
+    relative = signal.lti([-1e3], [1.0, 0.1 * natural, natural**2])
+    _, drift, _ = signal.lsim(relative, base, t)
+    drift += 0.01 * np.random.default_rng(2).normal(size=t.size)
+    text(tmp_path / "one.csv", t, base, drift, header="Time [s],Table acc [m/s^2],Drift [mm]")
+    test = begun(tmp_path, tmp_path / "one.csv").tests[0]
+    assert (test.kind, test.refined_frequency) == ("steady", pytest.approx(6.5, rel=1e-4))
+    assert 2.5 < test.time[0] < 5.0
+    assert 20.5 < test.time[-1] < 22.5
 
 
 def test_a_summary_below_the_data_is_left_out(tmp_path):

@@ -28,12 +28,12 @@ UNITS = {
     "displacement": {
         **_prefixed("m", "mucnk"),
         **{"in": INCH, "mil": 1e-3 * INCH, "ft": FOOT},
-        **{"rad": 1.0, "mrad": 1e-3, "deg": TURN / 360.0},
+        **{"rad": 1.0, "mrad": 1e-3, "deg": TURN / 360.0, "rev": TURN},
     },
     "velocity": {
         **_prefixed("m/s", "mucnk"),
         **{"km/h": 1.0 / 3.6, "in/s": INCH, "ft/s": FOOT},
-        **{"rad/s": 1.0, "mrad/s": 1e-3, "deg/s": TURN / 360.0, "rpm": TURN / 60.0},
+        **{"rad/s": 1.0, "mrad/s": 1e-3, "deg/s": TURN / 360.0, "rpm": TURN / 60.0, "rev/s": TURN},
     },
     "acceleration": {
         **_prefixed("m/s^2", "muc"),
@@ -52,7 +52,7 @@ UNITS = {
 # Units of other quantities, that a file may name.
 FOREIGN = {
     *("V", "mV", "uV", "A", "mA", "bar", "mbar", "psi", "Pa", "kPa", "MPa", "C", "K", "F", "W", "degC"),
-    *("Hz", "%", "counts", "ticks", "inc", "ohm", "volt", "volts", "Volt", "amp", "amps", "-"),
+    *("Hz", "%", "counts", "mV/V", "ticks", "inc", "ohm", "volt", "volts", "Volt", "amp", "amps", "-"),
 }
 
 # Other spellings, and those used here.
@@ -85,6 +85,7 @@ WORDS = {
         **dict.fromkeys(("newton", "newtons"), "N"),
         **dict.fromkeys(("degree", "degrees"), "deg"),
         **dict.fromkeys(("radian", "radians"), "rad"),
+        **dict.fromkeys(("revs", "turns", "revolutions"), "rev"),
         **dict.fromkeys(("meter", "meters", "metres"), "m"),
         **{f"{p}N{sign}m": f"{p}N m" for p in ("", "m", "k") for sign in ("", ".", "-", "*")},
         **{"Nmm": "N mm", "Ncm": "N cm"},
@@ -96,7 +97,7 @@ WORDS = {
 
 def angular(unit: str) -> bool:
     """Whether a unit is one of an angle, its rates or a torque."""
-    return any(part in unit for part in ("rad", "deg", "rpm", "N m", "N cm", "lbf "))
+    return any(part in unit for part in ("rad", "deg", "rpm", "rev", "N m", "N cm", "lbf "))
 
 
 def usual(unit: str) -> str:

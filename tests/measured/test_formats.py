@@ -323,6 +323,8 @@ def of_a_logger(rows):
     return head + [f"{t},{d},{t},{v}" for t, d, v in cells] + [f"{cells[-1][0]},{cells[-1][1]}"]
 
 
+# Points between thousands, and decimal commas.
+SWAPPED = str.maketrans(",.", ".,")
 MORE_FORMS = {
     "headerless": (headerless, NUMBERED),
     "numbers behind a header": (list, NUMBERED),
@@ -331,6 +333,20 @@ MORE_FORMS = {
     "logger by number": (of_a_logger, [('"t"', "1"), ('"d"', "2"), ('"v"', "4")]),
     "logger by name": (of_a_logger, [('"t"', '"Name#2"')]),
     "two header rows": (lambda rows: ["t,-,-", "-,d,v", *rows[1:]], []),
+    "thousands and decimals": (
+        lambda rows: [
+            "t;d;v",
+            *(
+                ";".join(f"{float(cell):,.6f}".translate(SWAPPED) for cell in (t, d, f"{1e3 * float(v)}"))
+                for t, d, v in cells_of(rows)
+            ),
+        ],
+        [('unit = "mm/s" ', 'unit = "um/s" ')],
+    ),
+    "days": (
+        lambda rows: [rows[0], *(f"0 days 00:00:0{t}00,{d},{v}" for t, d, v in cells_of(rows))],
+        [('unit = "s"', 'unit = "datetime"')],
+    ),
     "thousands": (
         lambda rows: [
             rows[0],
@@ -358,21 +374,23 @@ def test_columns_are_found_in_any_layout(tmp_path, plain, form):
 
 
 def test_headers_between_blocks_are_left_out(tmp_path):
-    """A test stand begins each block with the names of its columns, and a line that tells when."""
+    """A test stand begins each block with the names of its columns, and lines that tell when and how long."""
     rows = lines()
     block = len(rows) // 3
     blocks = [rows[1 + i * block : 1 + (i + 1) * block] for i in range(3)]
     text = [
-        each for i, own in enumerate(blocks) for each in (f"Cycle {i} at 12:0{i} pm", rows[0], "s,mm,-", *own)
+        each
+        for i, own in enumerate(blocks)
+        for each in (f"Time,12:0{i}:22.5", f"Samples,{block},{block}", rows[0], "s,mm,-", *own)
     ]
     path = fixture_measured.write(tmp_path, MEASURED, csv=text)
     found, plain = measured.read(path).tests[0], rows[1 : 1 + 3 * block]
-    assert "6 lines of further headers left out" in found.remarks[0]
+    assert "8 lines of further headers left out" in found.remarks[0]
     assert found.time.size == len(plain)
     assert [column.name for column in survey(tmp_path / "one.csv").columns] == ["t", "d", "v"]
     np.testing.assert_allclose(found.time, [float(row.split(",")[0]) for row in plain], atol=1e-12)
-    text[block + 7] = "0.1,oops,0.2"
-    with pytest.raises(measured.MeasuredError, match=rf"one.csv:{block + 8}: d: \"oops\" is not"):
+    text[block + 9] = "0.1,oops,0.2"
+    with pytest.raises(measured.MeasuredError, match=rf"one.csv:{block + 10}: d: \"oops\" is not"):
         measured.read(fixture_measured.write(tmp_path, MEASURED, csv=text))
 
 

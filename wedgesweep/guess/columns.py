@@ -7,6 +7,7 @@ from itertools import pairwise, permutations
 
 import numpy as np
 
+from wedgesweep.measured.clock import continued
 from wedgesweep.measured.declarations import MOTIONS, QUANTITIES
 from wedgesweep.measured.signals import stand_ins
 from wedgesweep.readers.survey import Column
@@ -20,7 +21,7 @@ STEMS = {
     "acceleration": r"acc|acel|beschl|ddot|\bimu|加速度",
     "velocity": r"(?<!tra)vel|speed|geschw|vitesse|rpm|omega|tacho|qdot|xdot|gyro|drehzahl|速度|转速|回転",
     FORCE: r"force|friction|reibung|torque|trq|kraft|moment|thrust|effort|load|traction|\btau"
-    r"|forza|fuerza|copp?ia\b|couple\b|力|载荷|荷重|扭矩|トルク",
+    r"|forza|fuerza|br(ü|ue)cke|\bdms\b|copp?ia\b|couple\b|力|载荷|荷重|扭矩|トルク",
     "displacement": r"disp|pos|ang[lu]|weg\b|winkel|laser|lvdt|stroke|encod|deflect|travel|rotation|extens"
     r"|distance|hub\b|theta|plate|mass|auslenk|verschieb|cors[ae]\b|course|d[ée]plac|desplaz|string.?pot"
     r"|位移|变位|変位|角度",
@@ -35,7 +36,7 @@ SYMBOLS = {
 }
 # Words of what a rig stands on, of all that drives it, and of what it was told to do, or is of no use here.
 PLACES = r"base|ground|table|fuss|support|wall|side.?frame|axle|wheel|floor|foundation"
-DRIVES = rf"input|excit|shaker|driv(er|ing)|exciter|source|anreg|{PLACES}"
+DRIVES = rf"input|excit|shaker|hammer|driv(er|ing)|exciter|source|anreg|{PLACES}"
 # A count of samples, which is no time.
 COUNTS = r"n|nr\.?|no\.?|#|index|samples?|points?|count(er)?|row|scan|sequence"
 NOT_MEASURED = (
@@ -48,7 +49,8 @@ PRESSES, SET = r"load|normal|clamp|\bf_?[nz]\b|last\b|kraft_?n\b|载荷|法向|�
 # A motor's current may stand for its torque, a pressure for the force of its piston.
 STANDS_FOR_FORCE = r"curr|\bamp|strom|pwm|duty|press|druck|volt"
 STANDING_UNITS = ("A", "mA", "bar", "mbar", "psi", "kPa", "MPa")
-# Share of it that the motion explains from which it does (a convention): of a supply it explains nothing.
+# Share of it that the motion explains from which it does (a convention): of a supply, or of a sensor that
+# shows noise, it explains nothing. What does best, less what it explains the other way round, is the force.
 STANDS = 0.5
 # Points of a column for a quantity.
 OF_UNIT, OF_NAME, OF_FOREIGN, OF_COMMAND, OF_SHARED, OF_PROXY = 4.0, 3.0, -1.5, -4.0, 0.3, 1.0
@@ -76,8 +78,8 @@ DAYS, EPOCH = (2e4, 8e4), (1e9, 4e9)
 RUN = re.compile(r"(?:run|trial|versuch|messung|repeat|rep|cycle)\W*(\d+)", re.IGNORECASE)
 # Units and names of angles and torques.
 ANGULAR = re.compile(
-    r"rad|deg|rpm|N m|N cm|lbf |ang[lu]|winkel|theta|phi|\bq|rotat|joint|torsion|pendul|torque|omega|\btau"
-    r"|encod|gyro"
+    r"rad|deg|rpm|\brev\b|N m|N cm|lbf |ang[lu]|winkel|theta|phi|\bq|rotat|joint|torsion|pendul|torque|omega"
+    r"|\btau|encod|gyro"
 )
 BRACKETS, WORDS = re.compile(r"[\[(]([^\[\]()]*)[\])]"), re.compile(r"[a-zA-ZäöüÄÖÜß/']+|\d+")
 
@@ -209,8 +211,8 @@ def _is_count(column: Column) -> bool:
 
 
 def _goes_evenly(column: Column) -> bool:
-    """Whether numbers rise in even steps, as time does and no motion that turns back."""
-    steps = np.diff(_numbers(column))
+    """Whether numbers rise in even steps, as time does and no motion that turns back; runs may begin anew."""
+    steps = np.diff(continued(_numbers(column))[0])
     even = (np.abs(steps / max(float(np.median(steps)), 1e-300) - 1.0) < UNEVEN).mean() if steps.size else 0.0
     return bool((steps >= 0.0).all()) and even > EVEN
 
@@ -420,7 +422,12 @@ def _by_numbers(columns: Sequence[Column], time: np.ndarray | None) -> dict[str,
         found = {"displacement": slope[0], "velocity": slope[1]}
     rest = [i for i in kept if i not in found.values()]
     moves = [found["displacement"]] if found else rest
-    explained = {(a, b): _explained(signals[a], signals[b]) for a in moves for b in rest if a != b}
+    pairs_of_force = [(a, b) for a in moves for b in rest if a != b]
+    explained = {
+        (a, b): forth - _share(signals[b], signals[a])
+        for a, b in pairs_of_force
+        if (forth := _share(signals[a], signals[b])) > STANDS
+    }
     if explained:
         best = max(explained, key=lambda pair: explained[pair])
         found |= {"displacement": best[0], FORCE: best[1]}
@@ -466,11 +473,6 @@ def _correlation(first: np.ndarray, second: np.ndarray) -> float:
     return float(np.corrcoef(first[:size], second[:size])[0, 1])
 
 
-def _explained(displacement: np.ndarray, force: np.ndarray) -> float:
-    """Share of a force that place and direction of a motion explain, less what they do the other way."""
-    return _share(displacement, force) - _share(force, displacement)
-
-
 def _share(x: np.ndarray, f: np.ndarray) -> float:
     """Share of a force (n,) that place and direction of a motion (n,) explain."""
     size = min(x.size, f.size)
@@ -486,16 +488,27 @@ def _share(x: np.ndarray, f: np.ndarray) -> float:
 
 def _derived(chosen: Mapping[str, Chosen], time: Column | None) -> Chosen:
     """The velocity, marked if it is but the slope of the displacement."""
-    d, v = chosen["displacement"].values, chosen["velocity"].values
-    t = np.arange(d.size) if time is None else time.channel.values
-    good = np.isfinite(d) & np.isfinite(t)
-    if v.size != d.size or t.size != d.size or good.sum() < 8 or (np.diff(t[good]) <= 0.0).any():
-        return chosen["velocity"]
-    slope, v = np.gradient(d[good], t[good]), v[good]
-    v = np.nan_to_num(v)
-    size = float(slope @ v) / max(float(v @ v), 1e-300)
-    left = float(np.std(slope - size * v)) / max(float(slope.std()), 1e-300)
+    d, v = (chosen[name].values for name in ("displacement", "velocity"))
+    _, left = slope(d, v, None if time is None else time.channel.values)
     return replace(chosen["velocity"], keys={"derived": True}) if left < COMPUTED else chosen["velocity"]
+
+
+def slope(
+    displacement: np.ndarray, velocity: np.ndarray, time: np.ndarray | None = None
+) -> tuple[float, float]:
+    """What a velocity (n,) is multiplied by as the slope of a displacement (n,), and the share that is left.
+
+    ``time`` (n,): the number of the sample without one. All is left where it does not go on.
+    """
+    t = np.arange(displacement.size) if time is None else time
+    if not velocity.size == displacement.size == t.size:
+        return 1.0, 1.0
+    good = np.isfinite(displacement) & np.isfinite(t)
+    if good.sum() < 8 or (np.diff(t[good]) <= 0.0).any():
+        return 1.0, 1.0
+    slope, v = np.gradient(displacement[good], t[good]), np.nan_to_num(velocity[good])
+    size = float(slope @ v) / max(float(v @ v), 1e-300)
+    return size, float(np.std(slope - size * v)) / max(float(slope.std()), 1e-300)
 
 
 def with_units(channels: Mapping[str, Column]) -> dict[str, Chosen]:

@@ -27,8 +27,12 @@ def measured(
     surveys: Sequence[Survey],
     found: Numbers,
     relative: Collection[str],
+    left: Sequence[Path],
 ) -> str:
-    """Text of a measured.toml at a path; ``relative``: channels of motion against the input."""
+    """Text of a measured.toml at a path.
+
+    ``relative``: channels of motion against the input; ``left``: files that are no records.
+    """
     first = tests[0]
     lines = [
         "# Written by wedgesweep init after a look at the data. Lines with '# ?' ask what it could not know.",
@@ -42,10 +46,13 @@ def measured(
         "[measurement.columns]",
         *_columns(first, path, relative),
         *_dialect(surveys),
-        *_uncertain(found, first.kind),
+        *_uncertain(found),
     ]
     for test in tests:
         lines += ["", *_test(test, first, path)]
+    if left:
+        names = ", ".join(_relative(each, path) for each in left)
+        lines += ["", f"{ASK}left out, as they have too few numbers for records: {names}. Are they?"]
     return "\n".join(lines) + "\n"
 
 
@@ -65,7 +72,7 @@ def _rate(first: Guessed) -> Iterator[str]:
             yield f"{ASK}At another rate friction and springs stay as they are; damping and mass do not."
         yield f"{'' if first.kind == LOOP else '# '}rate_hz = {UNKNOWN_RATE}"
     else:
-        yield f"rate_hz = {first.rate:.10g}  # as a number in the file says"
+        yield f"rate_hz = {first.rate:.10g}  # as a number in the file says, or its velocity"
 
 
 def _columns(first: Guessed, path: Path, relative: Collection[str]) -> Iterator[str]:
@@ -118,11 +125,11 @@ def _dialect(surveys: Sequence[Survey]) -> Iterator[str]:
         )
 
 
-def _uncertain(found: Numbers, kind: str) -> Iterator[str]:
+def _uncertain(found: Numbers) -> Iterator[str]:
     """Numbers of the model that come from the records."""
     guessed = {
         "bolster_stiffness": found.spring > 0.0,
-        "bolster_mass": kind == LOOP and not found.unseen,
+        "bolster_mass": not found.unseen,
         "friction_level": found.load > 0.0,
     }
     if any(guessed.values()):

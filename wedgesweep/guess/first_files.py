@@ -17,6 +17,7 @@ from wedgesweep.guess.model import Numbers, against_input, negated, numbers
 from wedgesweep.guess.tests import Guessed, imposed, tests_of
 from wedgesweep.measured import Measurement, consistency
 from wedgesweep.measured.declarations import LOOP
+from wedgesweep.measured.kinds import FEWEST
 from wedgesweep.readers import ReadError
 from wedgesweep.readers.survey import survey
 from wedgesweep.units import angular
@@ -40,14 +41,20 @@ def write(path: Path, files: Sequence[Path]) -> list[Path]:
             surveys.append(survey(file))
         except ReadError as error:
             problems += error.problems
+    records = [each for each in surveys if each.samples >= FEWEST]
+    if not records:  # none is longer than a list of remarks
+        records = [each for each in surveys if each.columns]
+    if not records:
+        problems += [f"{each.path}: no columns of numbers in it; export it as CSV" for each in surveys]
     if problems:
         raise InputError(problems)
-    tests, model, found = tests_of(surveys), path.parent / MODEL, UNKNOWN
+    left = [each.path for each in surveys if each not in records]
+    tests, model, found = tests_of(records), path.parent / MODEL, UNKNOWN
     channels = tests[0].run.channels
     relative = named = frozenset(name for name, each in channels.items() if is_relative(each.column))
     turns = any(angular(each.unit) for each in channels.values())
     for _ in range(MOST_LOOKS):
-        write_text(path, document.measured(path, model, tests, surveys, found, relative))
+        write_text(path, document.measured(path, model, tests, surveys, found, relative, left))
         write_text(model, document.model(found, _is_forced(tests[0]), turns))
         try:
             measurement = measured.read(path)

@@ -18,9 +18,9 @@ PAUSE, FEWEST, SHARE = 20.0, 200, 0.1
 # Part of a free motion in which it must be at its largest, and share of the largest swing above which the
 # swing before that counts as a push.
 BEGINNING, PUSH, TAIL = 0.5, 0.9, 0.1
-# Distance of a period from the mean of the second half of a record, over the largest one of a period of that
-# half, from which it belongs to the run-up: noise alone hardly doubles it.
-RUN_UP = 2.0
+# Distance of a period from the median one, over the median of these distances, beyond which it belongs to the
+# run-up or the run-down: a trend doubles it, and noise of one number in thousands of periods makes it 5.
+RUN_UP = 5.0
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,8 @@ def kind_of(signals: Mapping[str, np.ndarray], time: np.ndarray) -> tuple[str, s
         return LOOP, "a force under a recorded displacement"
     leading = signals.get("input", next(iter(signals.values())))
     response = next((each for name, each in signals.items() if name != "input"), leading)
-    if is_steady(leading, time) and is_steady(response, time):
+    used = steady_part(response, time).holds(time) if "input" in signals else np.ones(time.size, bool)
+    if 2 * used.sum() > time.size and all(is_steady(each[used], time[used]) for each in (leading, response)):
         return STEADY, "it repeats from period to period"
     driven = "under a recorded input" if "input" in signals else "free: it decays"
     return TRANSIENT, f"a motion from some start, {driven}"
@@ -111,14 +112,23 @@ def from_release(signal: np.ndarray, time: np.ndarray) -> float | None:
     return down(float(time[largest]), float(time[1] - time[0])) if pushed else None
 
 
-def from_steady(signal: np.ndarray, time: np.ndarray) -> float | None:
-    """When a driven motion (n,) has run up, if its beginning is unlike the second half of the record."""
-    cycles = cut(time, signal, estimate_frequency(time, signal))
-    half = cycles.times.size // 2
-    away = np.linalg.norm(cycles.harmonics - cycles.harmonics[half:].mean(axis=0), axis=1)
-    run_up = np.flatnonzero(away[:half] > RUN_UP * away[half:].max())
-    if not run_up.size or cycles.times.size - run_up[-1] - 1 < FEWEST_CYCLES:
-        return None
-    period = cycles.times[1] - cycles.times[0]
-    start = cycles.middle + cycles.times[run_up[-1]] + 0.5 * period
-    return down(float(start), float(time[1] - time[0]))
+def steady_part(signal: np.ndarray, time: np.ndarray) -> Part:
+    """Part in which a driven motion (n,) is as in most of its record, without run-up and run-down.
+
+    The frequency is that of the middle half: periods that grow have other lines as well.
+    """
+    quarter = signal.size // 4
+    middle = slice(quarter, 3 * quarter)
+    frequency = estimate_frequency(time[middle], signal[middle])
+    if not frequency * (time[quarter] - time[0]) >= FEWEST_CYCLES:
+        return WHOLE
+    cycles = cut(time, signal, frequency)
+    parts = np.column_stack([cycles.harmonics.real, cycles.harmonics.imag])
+    away = np.linalg.norm(parts - np.median(parts, axis=0), axis=1)
+    like = np.flatnonzero(away <= RUN_UP * np.median(away))
+    half, step = 0.5 * (cycles.times[1] - cycles.times[0]), float(time[1] - time[0])
+    first, last = (float(cycles.middle + cycles.times[each]) for each in like[[0, -1]])
+    return Part(
+        down(first - half, step) if like[0] else None,
+        down(last + half, step) if like[-1] < away.size - 1 else None,
+    )

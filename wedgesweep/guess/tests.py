@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from wedgesweep.guess.columns import (
+    DERIVED,
     FORCE,
     HUGE,
     INPUT,
@@ -17,9 +18,10 @@ from wedgesweep.guess.columns import (
     choose,
     known_samples,
     runs_of,
+    slope,
     with_units,
 )
-from wedgesweep.guess.kind import WHOLE, Part, down, from_release, from_steady, kind_of, parts_of
+from wedgesweep.guess.kind import WHOLE, Part, down, from_release, kind_of, parts_of, steady_part
 from wedgesweep.measured.clock import continued
 from wedgesweep.measured.declarations import LOOP, MOTIONS, STEADY, TRANSIENT
 from wedgesweep.measured.kinds import released_again
@@ -54,8 +56,9 @@ def tests_of(surveys: Sequence[Survey]) -> list[Guessed]:
     parts = [(survey, columns) for survey in surveys for columns in runs_of(known_samples(survey.columns))]
     first = choose(parts[0][1])
     found = [
-        Guessed(survey.path, _like(first, parts[0][1], columns), rate=_rate(survey))
+        Guessed(survey.path, run, rate=_rate(survey) or _rate_of(run))
         for survey, columns in parts
+        for run in [_like(first, parts[0][1], columns)]
     ]
     moving = [test for test in found if any(name in test.run.channels for name in MOTIONS)]
     others = [test for test in found if test not in moving and test.run.channels]
@@ -95,6 +98,17 @@ def _rate(survey: Survey) -> float | None:
         if value > 0.0 and bare in (*RATES, *INTERVALS):
             return value if bare in RATES else 1.0 / value
     return None
+
+
+def _rate_of(run: Run) -> float | None:
+    """Sampling rate (Hz) at which a velocity is the slope of a displacement, whose units the file names."""
+    both = [run.channels[name] for name in ("displacement", "velocity") if name in run.channels]
+    if run.time is not None or len(both) < 2 or any(each.questions for each in both):
+        return None
+    size, left = slope(
+        *(UNITS[name][each.unit] * each.values for name, each in zip(MOTIONS, both, strict=False))
+    )
+    return float(f"{1.0 / size:.4g}") if left < np.sqrt(1.0 - DERIVED**2) else None
 
 
 def _joined(test: Guessed, other: Guessed) -> Guessed:
@@ -172,12 +186,12 @@ def _releases(
 def _begun(part: Part, time: np.ndarray, signals: Mapping[str, np.ndarray], kind: str) -> Part:
     """A part of a test, from where it is free or steady on."""
     response = next(each for name, each in signals.items() if name != INPUT or len(signals) == 1)
-    start = None
+    own = WHOLE
     if kind == STEADY:
-        start = from_steady(response, time)
+        own = steady_part(response, time)
     elif kind == TRANSIENT and INPUT not in signals:
-        start = from_release(response, time)
-    return part if start is None else replace(part, start=start)
+        own = Part(from_release(response, time))
+    return Part(part.start if own.start is None else own.start, part.end if own.end is None else own.end)
 
 
 def _compared(channels: Mapping[str, Chosen]) -> dict[str, Chosen]:

@@ -43,8 +43,9 @@ NO_TEXT = "holds null characters, so that it is no text; export it as CSV"
 LINE_END = re.compile(r"\r\n|\n|\r")
 DECIMAL_COMMA = re.compile(r"[+-]?\d*,\d+([eE][+-]?\d+)?")
 IN_THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2}(,\d{3})+")
-# A number with either decimal sign.
-DECIMAL = re.compile(r"[+-]?(\d+[.,]?\d*|[.,]\d+)([eE][+-]?\d+)?")
+# A number with a sign for thousands and the other one for decimals, and one with either sign for decimals.
+GROUPED = re.compile(r"[+-]?\d{1,3}((\.\d{3})+,|(,\d{3})+\.)\d+")
+DECIMAL = re.compile(rf"{GROUPED.pattern}|[+-]?(\d+[.,]?\d*|[.,]\d+)([eE][+-]?\d+)?")
 
 
 class Header(NamedTuple):
@@ -300,6 +301,8 @@ def _decimal(rows: Sequence[Sequence[str]], columns: Sequence[int], stated: Mapp
     """The decimal sign of the cells of some columns; raises ValueError if commas may part thousands."""
     cells = [row[column] for row in rows for column in columns if column < len(row)]
     commas = [cell for cell in cells if DECIMAL_COMMA.fullmatch(cell)]
+    if grouped := next(filter(GROUPED.fullmatch, cells), ""):
+        return max(DECIMALS.values(), key=grouped.rfind)
     if not commas or stated.get("thousands") == "comma":
         return "."
     if all(map(IN_THOUSANDS.fullmatch, commas)) or any(

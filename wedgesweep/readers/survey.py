@@ -26,6 +26,8 @@ FEWEST_ROWS = 8
 WIDEST = 64
 # Group and name of a variable in it: group/name, Sheet!name, structure.name; not the unit m/s in brackets.
 GROUP = re.compile(r"([^\[(]*)[/!.]([^/!.].*)", re.DOTALL)
+# What belongs to one of an array of structures.
+OF_AN_ARRAY = re.compile(r"(.*\(\d+\))\.(.*)")
 SAMPLES = re.compile(r"data|daten|values?|samples", re.IGNORECASE)
 # Cells of a header of words between spaces: a unit in brackets belongs to the word before it.
 WORDS = re.compile(r"[^\s\[(]+(?:\s*[\[(][^\])]*[\])])?")
@@ -76,9 +78,14 @@ class Survey:
     numbers: Mapping[str, float] = field(default_factory=dict)
     stated: Mapping[str, str] = field(default_factory=dict)
 
+    @property
+    def samples(self) -> int:
+        """Those of the longest column."""
+        return max((each.channel.values.size for each in self.columns), default=0)
+
 
 def survey(path: Path) -> Survey:
-    """Look at all columns of a file; raises ReadError."""
+    """Look at all columns of a file, which may have none of numbers; raises ReadError."""
     reader = readers.READERS.get(path.suffix.lower())
     if reader is None:
         return _of_text(path)
@@ -94,8 +101,6 @@ def survey(path: Path) -> Survey:
         if values.size == 1 and values.dtype.kind in "fiu":
             numbers[name] = float(values.ravel()[0])
         columns += _variables(name, raw)
-    if not columns:
-        raise ReadError([f"{path}: no list of numbers in it"])
     return Survey(path, tuple(columns), numbers)
 
 
@@ -120,7 +125,7 @@ def _variables(name: str, raw: Channel) -> list[Column]:
 
 def _within(name: str) -> tuple[str, str]:
     """Group, sheet or structure of a variable, and its name there: of its samples that of what holds them."""
-    found = GROUP.fullmatch(name)
+    found = OF_AN_ARRAY.fullmatch(name) or GROUP.fullmatch(name)
     if not found:
         return "", name
     inside = SAMPLES.fullmatch(found[2]) and GROUP.fullmatch(found[1])
@@ -140,7 +145,7 @@ def _of_text(path: Path) -> Survey:
     delimiter = max(tables, key=lambda name: (tables[name][1], name != "space"))
     numbers = tables[delimiter][0]
     if not numbers:
-        raise ReadError([f"{path}: no columns of numbers in its first {ROWS} lines; export it as CSV"])
+        return Survey(path, ())
     faults: list[str] = []
     for decimal in ({}, {"decimal": "comma"}, {"decimal": "point"}):
         try:

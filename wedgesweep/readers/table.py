@@ -16,9 +16,10 @@ from wedgesweep.units import DAY
 Name = str | int
 # The unit of time stamps that are dates; their values are seconds since midnight of the first day.
 DATETIME = "datetime"
-# A date in any order, which may be missing; a time of day; what follows it, or AM and PM.
+# A date in any order, or a number of days, either of which may be missing; a time of day; what follows it, or
+# AM and PM.
 DATE = re.compile(
-    r"\s*(?:(\d{1,4})([-./])(\d{1,2})\2(\d{1,4})(?:T|\s+))?"
+    r"\s*(?:\d+ days?,?\s+)?(?:(\d{1,4})([-./])(\d{1,2})\2(\d{1,4})(?:T|\s+))?"
     r"(\d{1,2})(:\d\d(?(1)|:\d\d)[^\sAaPp]*)\s*([AaPp])?[.Mm]*\s*$"
 )
 # The day of times without one.

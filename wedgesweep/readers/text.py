@@ -74,16 +74,23 @@ def _rows_of_text(lines: Sequence[str], dialect: Dialect, missing: set[str]) -> 
 def _further_headers(lines: Sequence[str], dialect: Dialect) -> set[int]:
     """Lines of headers between the data, where each block of a recorder has its own.
 
-    Each is the line above the data again, and what is no data above it.
+    Each is the line above the data again, and what is no data above it, or begins as a line above the first
+    data does: a recorder counts the samples of each block in one.
     """
     last = next((line for line in reversed(lines[: dialect.first]) if line.strip()), "")
     found = set[int]()
     if not last or _is_sample(last, dialect):
         return found
+    begin = {line.split(dialect.delimiter)[0] for line in lines[: dialect.first]}
+    begin = {first for first in begin if not csv_dialect.is_number(first.strip())}
+
+    def is_header(line: str) -> bool:
+        return not _is_sample(line, dialect) or line.split(dialect.delimiter)[0] in begin
+
     for place in range(dialect.first, len(lines)):
         if lines[place] == last:
             above = place
-            while above >= dialect.first and above not in found and not _is_sample(lines[above], dialect):
+            while above >= dialect.first and above not in found and is_header(lines[above]):
                 found.add(above)
                 above -= 1
     return found
@@ -137,6 +144,11 @@ def _channel(cells: list[str], name: str, unit: str, signs: tuple[str, str], mis
         return Channel(seconds, DATETIME, faults={row: f"{name}: {fault}" for row, fault in faults.items()})
     decimal, thousands = signs
     plain = [cell.replace(thousands, "") for cell in cells] if thousands else cells
+    other = next(sign for sign in csv_dialect.DECIMALS.values() if sign != decimal)
+    if any(other in cell for cell in plain):
+        plain = [
+            _ungrouped(cell, other) if cell.rfind(decimal) > cell.rfind(other) else cell for cell in plain
+        ]
     if decimal == ",":
         plain = [cell.replace(",", ".") for cell in plain]
     try:
@@ -153,6 +165,11 @@ def _channel(cells: list[str], name: str, unit: str, signs: tuple[str, str], mis
     ):
         values[row] = np.nan
     return Channel(values, unit, faults=faults)
+
+
+def _ungrouped(cell: str, sign: str) -> str:
+    """A number without a sign between its thousands; any other text as it is."""
+    return cell.replace(sign, "") if csv_dialect.GROUPED.fullmatch(cell) else cell
 
 
 def _number(cell: str) -> float:
