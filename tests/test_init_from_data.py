@@ -196,6 +196,11 @@ def test_what_swings_is_a_pendulum(tmp_path):
         own = begun(tmp_path / name, text(tmp_path / f"{name}.csv", *columns, header=header)).model.oscillator
         assert own["restoring_force"] == "pendulum"
         assert own["spring"] / own["mass"] == pytest.approx(0.6 / 0.0125, rel=0.03)
+    # A gyroscope alone tells it as well, and no spring that turns.
+    for swings, turn in (True, angle), (False, np.exp(-0.1 * t) * np.cos(6.9 * t)):
+        rate = np.gradient(turn, t) + 0.01
+        begun(tmp_path, text(tmp_path / "gyro.csv", t, rate, header="t (s),gyro (rad/s)"))
+        assert ("restoring_force" in (tmp_path / "model.toml").read_text()) == swings
     columns, header = (t, angle, 0.6 * angle), "t (s),theta (rad),torque (N m)"
     begun(tmp_path, text(tmp_path / "spring.csv", *columns, header=header))
     assert "restoring_force" not in (tmp_path / "model.toml").read_text()
@@ -356,6 +361,35 @@ def test_a_block_on_a_shaken_table_has_no_spring(tmp_path):
     assert (own["spring"], own["damping"]) == (0.0, 0.0)
     shown = re.search(r"shows about (\S+) N", (tmp_path / "model.toml").read_text())
     assert float(shown[1]) == pytest.approx(friction, rel=0.02)
+
+
+def test_a_block_that_drifts_on_a_shaken_table_has_no_spring(tmp_path):
+    """Under random motion it has windows of ten of the table's periods, whatever the length of the record."""
+    random, step, friction = np.random.default_rng(3), 0.01, 2.0
+    t = np.arange(0.0, 25.0, step)
+    table = signal.sosfiltfilt(
+        signal.butter(2, (0.7, 6.0), "bandpass", fs=1 / step, output="sos"), random.normal(size=t.size)
+    )
+    table *= 3.0 / table.std()
+    speed, slid = 0.0, []
+    for each in table:
+        free = speed - step * each
+        speed = free - np.clip(free, -step * friction, step * friction)
+        slid.append(step * speed + (slid[-1] if slid else 0.0))
+    found = begun(
+        tmp_path,
+        text(
+            tmp_path / "one.csv",
+            t,
+            table,
+            1e3 * np.array(slid) + 0.02 * random.normal(size=t.size),
+            header="t [s],Table acc [m/s^2],Block rel [mm]",
+        ),
+    )
+    assert found.model.oscillator["spring"] == 0.0
+    windows = transient_data(found).windows
+    assert len(windows) >= 4
+    assert 0.2 < windows[0].model.natural_units(1.0, windows[0].grid.omega).time * 2.0 * np.pi < 0.7
 
 
 def test_a_free_motion_begins_when_it_is_let_go(tmp_path):

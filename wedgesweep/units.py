@@ -15,6 +15,8 @@ TURN = 6.283185307179586
 # Units of time whose zero is a date: texts, serial days of Excel, seconds since 1970.
 DAY = 86400.0
 DATES = {"datetime": 1.0, "excel": DAY, "epoch": 1.0}
+# Seconds since 1970 of this century.
+EPOCH = (1e9, 4e9)
 
 
 def _prefixed(unit: str, prefixes: str) -> dict[str, float]:
@@ -93,6 +95,11 @@ WORDS = {
         **dict.fromkeys(("ft-lb", "ft-lbf", "lbf-ft", "lb-ft", "lbf.ft"), "lbf ft"),
     },
 }
+
+
+def is_dated(unit: str, first: float) -> bool:
+    """Whether time in a unit counts from a date: by the unit, or as the first stamp is one since 1970."""
+    return unit in DATES or EPOCH[0] < UNITS["time"][unit] * first < EPOCH[1]
 
 
 def angular(unit: str) -> bool:

@@ -12,7 +12,8 @@ from tests.fixture_measured import MEASURED, csv_lines, vibration
 from wedgesweep import measured
 from wedgesweep.measured import consistency
 from wedgesweep.measured.clock import fit_clock, resolution
-from wedgesweep.measured.signals import stuck_samples
+from wedgesweep.measured.even import evened
+from wedgesweep.measured.signals import Signal, stuck_samples
 
 RANDOM = np.random.default_rng(5)
 
@@ -71,6 +72,16 @@ def test_a_rate_that_drifts_slowly_is_followed_whatever_the_noise(tmp_path):
         assert left.std() < 1.1 * 0.05e-3
 
 
+def test_frames_that_a_noisy_video_lost_are_made_up():
+    """Five of them, a tenth of a swing: what they add to the noise of the record is next to nothing."""
+    t, random = np.arange(360) / 30.0, np.random.default_rng(3)
+    angle = 25.0 * (1.0 - t / 13.0) * np.cos(3.13 * t) + 0.12 * random.normal(size=t.size)
+    for lost, size in (5, 360), (40, 220):
+        kept = np.r_[0:100, 100 + lost : 360]
+        signal = Signal(t[kept], angle[kept], np.full(kept.size, 1e-6), str)
+        assert evened({"displacement": signal}).time.size == size
+
+
 def test_a_pause_ends_the_part_that_is_used(tmp_path):
     kept = (EVEN < 0.3) | (EVEN > 0.36)
     test = read(tmp_path, rows_of(EVEN[kept], *at(EVEN[kept])))
@@ -125,6 +136,7 @@ UNITS = {
     "ISO 8601, unstated": ("s", lambda t: f"2024-10-27 01:00:{1.5 + t:09.6f}"),
     "days of Excel": ("excel", lambda t: f"{45592.0832 + t / 86400.0:.12f}"),
     "since 1970": ("epoch", lambda t: f"{1729987200.0 + t:.4f}"),
+    "milliseconds since 1970": ("ms", lambda t: f"{1729987200000.0 + 1e3 * t:.1f}"),
     "minutes": ("min", lambda t: f"{t / 60.0:.10f}"),
     "microseconds": ("us", lambda t: f"{1e6 * t:.0f}"),
 }

@@ -12,7 +12,7 @@ from wedgesweep.measured.declarations import MOTIONS, QUANTITIES
 from wedgesweep.measured.signals import stand_ins
 from wedgesweep.readers.survey import Column
 from wedgesweep.readers.table import DATETIME, OF_A_MATRIX
-from wedgesweep.units import DATES, DAY, FOREIGN, UNITS, angular, is_unit, usual
+from wedgesweep.units import DATES, DAY, EPOCH, FOREIGN, UNITS, angular, is_unit, usual
 
 FORCE, INPUT, TIME = "force", "input", "time"
 # Parts of names, and whole names, of each quantity; the first quantity with a match has the column.
@@ -74,7 +74,7 @@ HUGE = 1e100
 STEPS = (1e-7, 0.5)
 # Angles (in the file) beyond which they are degrees; displacements that are metres.
 DEGREES, METRES = 13.0, 0.05
-DAYS, EPOCH = (2e4, 8e4), (1e9, 4e9)
+DAYS = (2e4, 8e4)
 RUN = re.compile(r"(?:run|trial|versuch|messung|repeat|rep|cycle)\W*(\d+)", re.IGNORECASE)
 # Units and names of angles and torques.
 ANGULAR = re.compile(

@@ -35,6 +35,9 @@ TAIL, PADDED = 0.1, 8
 # motion over absolute, random motion has 0.17 if it is relative, and 4 if it is not; absolute motion at one
 # frequency of a frame that rubs on a wall 0.7.
 CLEARLY = 0.5
+# The same above which a spring is none of a shaken mass: the drift of one that slides leaves 0.99 of what
+# friction alone does, and the spring of a frame that rubs on a wall 0.90.
+HARDLY = 0.95
 # Tests that are looked at.
 TESTS = 6
 
@@ -69,7 +72,7 @@ def numbers(measurement: Measurement) -> Numbers:
     else:
         law = _free
     left, found = law(tests, _spring)
-    if measurement.model.turns and all(test.displacement is not None for test in tests):
+    if measurement.model.turns and all({"displacement", "velocity"} & {*test.responses} for test in tests):
         left_by_pendulum, pendulum = law(tests, np.sin)
         if left_by_pendulum < CLEARLY * left:
             return replace(pendulum, swings=True)
@@ -228,6 +231,11 @@ def _moving(test: TestRecord, load: float, restoring: Restoring) -> _Moving:
     elif test.velocity is not None:
         place, velocity = np.zeros(force.size), low_pass(test.velocity)
         acceleration = derivative(velocity, rate)
+        direct = np.sign(velocity[np.abs(velocity) >= MOVING * np.abs(velocity).max()])
+        if test.force is None and test.input is None and np.ptp(direct):  # a free motion that turns back
+            turned, half = np.cumsum(test.velocity) / rate, np.arange(force.size) >= force.size // 2
+            drift = np.polynomial.Polynomial.fit(test.time[half], turned[half], 1)
+            place = low_pass(turned - drift(test.time))
     else:
         assert test.acceleration is not None
         acceleration = low_pass(test.acceleration)
@@ -301,7 +309,7 @@ def _shaken(
     become one another at the frequencies at which the response has power. ``clear``: share of the largest
     velocity on the base below which samples do not count, as the mass may stick there. Friction opposes
     velocity as a damper does, and less of it where the mass sticks. So there is no damper unless it explains
-    the records clearly better: effects can add one but take none away.
+    the records clearly better: effects can add one but take none away. A spring must explain something.
     """
     designs, values = [], []
     for test in tests:
@@ -323,6 +331,9 @@ def _shaken(
     design, value = np.vstack(designs), np.concatenate(values)
     left, found = _fitted(design, value)
     left_undamped, (spring, friction) = _fitted(design[:, [0, 2]], value)
+    left_of_friction, (friction_alone,) = _fitted(design[:, [2]], value)
+    if left_undamped > HARDLY * left_of_friction:
+        spring, friction = 0.0, friction_alone
     return left, found if left < CLEARLY * left_undamped else [spring, 0.0, friction]
 
 

@@ -26,7 +26,7 @@ from wedgesweep.measured.clock import continued
 from wedgesweep.measured.declarations import LOOP, MOTIONS, STEADY, TRANSIENT
 from wedgesweep.measured.kinds import released_again
 from wedgesweep.readers.survey import Column, Survey
-from wedgesweep.units import UNITS
+from wedgesweep.units import UNITS, is_dated
 
 # Names of single numbers that are a sampling rate (Hz), and of those that are a sampling interval (s).
 RATES = ("fs", "rate", "samplerate", "samplingrate", "samplefrequency", "samplingfrequency", "fsamp", "sr")
@@ -215,9 +215,9 @@ def _without(run: Run, channels: Mapping[str, Chosen]) -> Run:
 def _stamps(test: Guessed) -> np.ndarray:
     """Time stamps (n,) in s of a test, from its first one on if they are dates."""
     if test.run.time is not None:
-        values = continued(test.run.time.values)[0] * UNITS["time"][test.run.time.unit]
-        dated = test.run.time.unit in ("datetime", "excel", "epoch")
-        return values - values[np.isfinite(values)][0] if dated else values
+        values, unit = continued(test.run.time.values)[0], test.run.time.unit
+        start = float(values[np.isfinite(values)][0])
+        return (values - start * is_dated(unit, start)) * UNITS["time"][unit]
     first = next(iter(test.run.channels.values()))
     if first.column.channel.clock is not None:
         return first.column.channel.clock

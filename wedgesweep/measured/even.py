@@ -11,9 +11,9 @@ from wedgesweep.measured.clock import EVEN, Clock, counted_clock, fit_clock, typ
 from wedgesweep.measured.signals import Signal, reference
 
 FEWEST = 8
-# Error of interpolation in a gap, over the rms of a channel, up to which its samples are made up; or over the
-# error next to a gap of one sample, where noise is all that there is.
-MOST_ERROR, OVER_NOISE = 0.02, 1.5
+# Error of interpolation in a gap, over the rms of a channel, up to which samples are made up; or the power
+# which gaps as long add to a record, over that of its noise, by the error in gaps of one sample.
+MOST_ERROR, ADDED = 0.02, 0.1
 # Error of a cubic half way between samples, over that at a sample left out: 0.5^2 1.5^2 / (1^2 2^2).
 HALF_WAY = 0.14
 # Rounding of the stamps over their step from which a rate is fitted that they do not show one by one.
@@ -68,9 +68,15 @@ class _Placed:
 
     def long_gaps(self) -> np.ndarray:
         """Indices of the samples before gaps that are too long to be filled."""
-        bound = max(MOST_ERROR * float(self.signal.samples.std()), OVER_NOISE * self.error(1))
+        bound, noise = MOST_ERROR * float(self.signal.samples.std()), self.time.size * self.error(1) ** 2
         gaps = self.clock.gaps
-        long = [lost for lost in np.unique(gaps[gaps > 0]).tolist() if self.error(lost) > bound]
+        lengths, counts = (each.tolist() for each in np.unique(gaps[gaps > 0], return_counts=True))
+        errors = [self.error(lost) for lost in lengths]
+        long = [
+            lost
+            for lost, count, error in zip(lengths, counts, errors, strict=True)
+            if error > bound and count * lost * error**2 > ADDED * noise
+        ]
         return np.flatnonzero(np.isin(gaps, long))
 
     def at(self, time: np.ndarray) -> tuple[np.ndarray, float]:

@@ -14,7 +14,7 @@ from wedgesweep.measured.clock import continued, resolution
 from wedgesweep.measured.declarations import units as units_of
 from wedgesweep.readers import ReadError, Table
 from wedgesweep.readers.table import DATETIME, Channel
-from wedgesweep.units import DATES, DAY, UNITS, usual
+from wedgesweep.units import DATES, DAY, UNITS, is_dated, usual
 
 # Number of faulty samples that are listed per file; the others are counted.
 LISTED = 3
@@ -217,9 +217,10 @@ def _stamps(column: Channel, time: Mapping[str, Any], remarks: list[str]) -> _St
     if between:
         runs = f"one every {between * size:g} s of from_s and to_s"
         remarks.append(f"time begins anew in the file: its runs follow one another, {runs}")
-    if unit in DATES:
+    dated = is_dated(unit, first)
+    if dated:
         values = values - DAY / size * floor(first * size / DAY)
-    return _Stamps(values * size, rounding, column.faults, unit in DATES)
+    return _Stamps(values * size, rounding, column.faults, dated)
 
 
 def _missing(values: np.ndarray, channel: Mapping[str, Any]) -> np.ndarray:

@@ -12,6 +12,7 @@ from wedgesweep.diagnose.smoothing import HIGHEST, LowPass
 from wedgesweep.diagnose.transient.recorded_input import RecordedInput, no_input, starting_at
 from wedgesweep.diagnose.transient.window import Grid, RecordWindow
 from wedgesweep.errors import InputError
+from wedgesweep.measured.stationarity import median_frequency
 
 # Natural periods of a window, and of what is simulated before it so that the start of bristles is forgotten;
 # the latter under an input, which keeps lifting wedges off: they forget their start later.
@@ -152,6 +153,9 @@ def _extent(displacement: np.ndarray) -> tuple[float, float]:
 
 
 def _period(record: Recorded, model: Config) -> float:
-    """Natural period of the model in samples; that of a mass without a spring is the whole record."""
-    record_omega = 2.0 * pi * record.rate / record.channels.shape[1]
-    return 2.0 * pi * model.natural_units(_extent(record.channels[0])[1], record_omega).time * record.rate
+    """Natural period of the model in samples; without a spring that of the input, or all of the record."""
+    frequency = record.rate / record.channels.shape[1]
+    if record.input is not None:
+        frequency = max(frequency, median_frequency(record.input.samples, record.rate))
+    length = _extent(record.channels[0])[1]
+    return 2.0 * pi * model.natural_units(length, 2.0 * pi * frequency).time * record.rate
