@@ -100,12 +100,18 @@ class Chosen:
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """Columns of a run: its time, its channels by name, what is left, and the load of its faces."""
+    """Columns of a run: its time, its channels by name, all columns, and the load of its faces."""
 
     time: Chosen | None
     channels: Mapping[str, Chosen]
-    left: tuple[Column, ...] = ()
+    columns: Sequence[Column] = ()
     load: Column | None = None
+
+    @property
+    def left(self) -> list[Column]:
+        """Columns that are not used."""
+        used = [self.load, *(each.column for each in (self.time, *self.channels.values()) if each)]
+        return [column for column in self.columns if all(column is not each for each in used)]
 
 
 def unit_of(column: Column, quantities: Sequence[str]) -> str:
@@ -263,9 +269,7 @@ def choose(columns: Sequence[Column]) -> Run:
     chosen = with_units(channels)
     if "velocity" in chosen and "displacement" in chosen:
         chosen["velocity"] = _derived(chosen, time)
-    used = (time, load, *(each.column for each in chosen.values()))
-    left = tuple(column for column in columns if all(column is not each for each in used))
-    return Run(None if time is None else _clock(time), chosen, left, load)
+    return Run(None if time is None else _clock(time), chosen, columns, load)
 
 
 def is_relative(column: Column) -> bool:
@@ -417,9 +421,9 @@ def _by_numbers(columns: Sequence[Column], time: np.ndarray | None) -> dict[str,
         (a, b): _slope_of(signals[a] * _size(columns[a]), signals[b] * _size(columns[b]), span)
         for a, b in permutations(kept, 2)
     }
-    slope = max(pairs, key=lambda pair: pairs[pair], default=None)
-    if slope is not None and pairs[slope] > DERIVED:
-        found = {"displacement": slope[0], "velocity": slope[1]}
+    best = max(pairs, key=lambda pair: pairs[pair], default=None)
+    if best is not None and pairs[best] > DERIVED**2:
+        found = {"displacement": best[0], "velocity": best[1]}
     rest = [i for i in kept if i not in found.values()]
     moves = [found["displacement"]] if found else rest
     pairs_of_force = [(a, b) for a in moves for b in rest if a != b]
@@ -455,15 +459,11 @@ def _size(column: Column) -> float:
 
 
 def _slope_of(displacement: np.ndarray, velocity: np.ndarray, span: float) -> float:
-    """Correlation of a velocity with the slope of a displacement over a span of time; 0 if sizes differ."""
+    """Share of the slope of a displacement over a span of time that is a velocity; 0 if sizes differ."""
     size = min(displacement.size, velocity.size)
-    slope = np.gradient(displacement[:size]) * size / (span or size)
-    if not slope.std() or not span:
-        return 0.0
-    ratio = float(velocity[:size] @ slope / (slope @ slope))
+    ratio, left = slope(displacement[:size], velocity[:size], np.linspace(0.0, span, size))
     units = (1.0, 1e3, 1e-3, 180.0 / np.pi, np.pi / 180.0, 30.0 / np.pi)
-    alike = any(abs(ratio / unit - 1.0) < UNLIKE for unit in units)
-    return _correlation(slope, velocity) if alike else 0.0
+    return 1.0 - left**2 if any(abs(ratio * unit - 1.0) < UNLIKE for unit in units) else 0.0
 
 
 def _correlation(first: np.ndarray, second: np.ndarray) -> float:

@@ -41,9 +41,9 @@ def write(path: Path, files: Sequence[Path]) -> list[Path]:
             surveys.append(survey(file))
         except ReadError as error:
             problems += error.problems
-    records = [each for each in surveys if each.samples >= FEWEST]
-    if not records:  # none is longer than a list of remarks
-        records = [each for each in surveys if each.columns]
+    records = [each for each in surveys if each.samples >= FEWEST] or [
+        each for each in surveys if each.columns
+    ]
     if not records:
         problems += [f"{each.path}: no columns of numbers in it; export it as CSV" for each in surveys]
     if problems:

@@ -85,11 +85,9 @@ def parts_of(time: np.ndarray) -> list[Part]:
     runs = [(a, b) for a, b in pairwise(ends) if b - a >= fewest]
     if len(runs) < 2:
         return [WHOLE]
-    first = float(stamps[0])
     return [
         Part(down(stamps[a], step) if a else None, None if b == stamps.size else down(stamps[b - 1], -step))
         for a, b in runs
-        if first <= stamps[a]
     ]
 
 

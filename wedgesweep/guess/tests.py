@@ -70,7 +70,7 @@ def tests_of(surveys: Sequence[Survey]) -> list[Guessed]:
     # Only loops that all have a load tell the coefficient of friction; without it a load is of no use.
     if all(test.kind == LOOP and test.run.load is not None for test in tests):
         return tests
-    return [replace(test, run=_without_load(test.run)) for test in tests]
+    return [replace(test, run=replace(test.run, load=None)) for test in tests]
 
 
 def _like(first: Run, theirs: Sequence[Column], columns: Sequence[Column]) -> Run:
@@ -82,13 +82,7 @@ def _like(first: Run, theirs: Sequence[Column], columns: Sequence[Column]) -> Ru
     same = {name: columns[theirs.index(each.column)] for name, each in first.channels.items()}
     if all(same[name] is each.column for name, each in run.channels.items()):
         return run
-    left = [each.column for each in run.channels.values()] + [*run.left]
-    used = list(same.values())
-    return replace(run, channels=with_units(same), left=tuple(each for each in left if each not in used))
-
-
-def _without_load(run: Run) -> Run:
-    return run if run.load is None else replace(run, load=None, left=(*run.left, run.load))
+    return replace(run, channels=with_units(same))
 
 
 def _rate(survey: Survey) -> float | None:
@@ -149,7 +143,7 @@ def _with_kind(test: Guessed) -> list[Guessed]:
     elif kind == TRANSIENT:
         channels.pop(FORCE, None)
     channels = _compared(channels)
-    test = replace(test, run=_without(test.run, channels), kind=kind, reason=reason)
+    test = replace(test, run=replace(test.run, channels=channels), kind=kind, reason=reason)
     if kind == TRANSIENT and INPUT not in channels:
         parts = [each for part in parts for each in _releases(test, *part)]
     return [replace(test, part=_begun(*each, kind)) for each in parts]
@@ -200,16 +194,6 @@ def _compared(channels: Mapping[str, Chosen]) -> dict[str, Chosen]:
     if len(responses) < 3:
         return dict(channels)
     return {name: each for name, each in channels.items() if name != "acceleration"}
-
-
-def _without(run: Run, channels: Mapping[str, Chosen]) -> Run:
-    """A run with other channels; the columns of those that are gone are left."""
-    gone = [
-        each.column
-        for each in run.channels.values()
-        if all(each.column is not c.column for c in channels.values())
-    ]
-    return replace(run, channels=channels, left=(*run.left, *gone))
 
 
 def _stamps(test: Guessed) -> np.ndarray:

@@ -70,13 +70,9 @@ class _Placed:
         """Indices of the samples before gaps that are too long to be filled."""
         bound, noise = MOST_ERROR * float(self.signal.samples.std()), self.time.size * self.error(1) ** 2
         gaps = self.clock.gaps
-        lengths, counts = (each.tolist() for each in np.unique(gaps[gaps > 0], return_counts=True))
-        errors = [self.error(lost) for lost in lengths]
-        long = [
-            lost
-            for lost, count, error in zip(lengths, counts, errors, strict=True)
-            if error > bound and count * lost * error**2 > ADDED * noise
-        ]
+        errors = {lost: self.error(lost) for lost in np.unique(gaps[gaps > 0]).tolist()}
+        added = {lost: gaps[gaps == lost].sum() * error**2 for lost, error in errors.items()}
+        long = [lost for lost in errors if errors[lost] > bound and added[lost] > ADDED * noise]
         return np.flatnonzero(np.isin(gaps, long))
 
     def at(self, time: np.ndarray) -> tuple[np.ndarray, float]:

@@ -29,8 +29,6 @@ OF_A_SINE, OF_A_LOOP = ("frequency_hz", "amplitude_mm", "amplitude_N"), ("lowpas
 OF_A_TRANSIENT, NOT_OF_A_SINE = ("undriven",), ("repeat_of",)
 # Sizes in SI, and names, of the units in which they are shown.
 DISPLAY_UNITS = {"displacement": (1e-3, "mm"), "velocity": (1e-3, "mm/s"), "acceleration": (1.0, "m/s^2")}
-# What a test must have, by kind.
-NEEDED = {"transient": (), "loop": ("force",)}
 MEANING = {
     "transient": "a transient is a motion from some start, free or under a recorded input",
     "loop": "a loop is the force under a recorded displacement, or else under a velocity",
@@ -39,7 +37,7 @@ MEANING = {
 
 def column_faults(columns: Mapping[str, Any], kind: str) -> list[str]:
     """Faults of the channels of tests that are not steady, as "key: fault"."""
-    missing = [f"{name}: missing; {MEANING[kind]}" for name in NEEDED[kind] if name not in columns]
+    missing = [f"force: missing; {MEANING[kind]}"] if kind == LOOP and "force" not in columns else []
     if kind == TRANSIENT and not any(name in columns for name in MOTIONS):
         missing = [f"displacement: missing, and so are velocity and acceleration; {MEANING[kind]}"]
     if kind == TRANSIENT and "displacement" not in columns and columns.get("velocity", {}).get("derived"):

@@ -10,7 +10,7 @@ import numpy as np
 
 from wedgesweep.processes import apart
 from wedgesweep.readers import hdf5
-from wedgesweep.readers.table import NAME_FIELDS, UNIT_FIELDS, Channel, Wanted
+from wedgesweep.readers.table import Channel, Wanted, unit_and_name
 
 HDF5_MARK = b"\x89HDF\r\n\x1a\n"
 # A v7.3 file of MATLAB is HDF5 behind a header of this length.
@@ -113,8 +113,7 @@ def _fields(variables: Mapping[str, Any], path: str = "") -> Iterator[tuple[str,
 
     Beside the samples a recorder's struct holds the name of a channel and its unit.
     """
-    words = {key.lower(): str(value[0]) for key, value in variables.items() if path and _is_word(value)}
-    unit, label = (next(filter(None, map(words.get, keys)), "") for keys in (UNIT_FIELDS, NAME_FIELDS))
+    unit, label = unit_and_name({k: str(v[0]) for k, v in variables.items() if path and _is_word(v)})
     for name, value in variables.items():
         yield path + name, Channel(value, unit, label=label)
         if isinstance(value, np.ndarray) and value.dtype.names:

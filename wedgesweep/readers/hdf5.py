@@ -8,7 +8,7 @@ import numpy as np
 
 from wedgesweep.processes import apart
 from wedgesweep.readers.extras import module
-from wedgesweep.readers.table import NAME_FIELDS, UNIT_FIELDS, Channel, Wanted
+from wedgesweep.readers.table import Channel, Wanted, unit_and_name
 
 # The attribute in which MATLAB says what a dataset is.
 CLASS = "MATLAB_class"
@@ -47,8 +47,7 @@ def _channel(stored: Any, column: Any) -> Channel:
     unit = unit.decode("utf-8", "replace") if isinstance(unit, bytes) else str(unit)
     if CLASS not in stored.attrs:
         return Channel(stored[()] if column is ... else stored[()][column], unit)
-    words = {name.lower(): word for name, each in stored.parent.items() if (word := _word(each))}
-    unit, label = (next(filter(None, map(words.get, keys)), "") for keys in (UNIT_FIELDS, NAME_FIELDS))
+    unit, label = unit_and_name({name: word for name, each in stored.parent.items() if (word := _word(each))})
     return Channel(np.transpose(stored[()]), unit, label=label)
 
 

@@ -40,14 +40,6 @@ NAMED_NUMBER = re.compile(
 LONGEST, FACTORS = 200, {"kHz": 1e3, **UNITS["time"]}
 
 
-class Everything(Wanted):
-    """All variables of a binary file."""
-
-    def __call__(self, variable: str, number: int) -> bool:
-        """Whatever it is."""
-        return True
-
-
 @dataclass(frozen=True, eq=False)
 class Column:
     """A channel as a file holds it.
@@ -89,7 +81,7 @@ def survey(path: Path) -> Survey:
     reader = readers.READERS.get(path.suffix.lower())
     if reader is None:
         return _of_text(path)
-    stored = readers.stored(path, lambda: reader(regular(path), Everything(())))
+    stored = readers.stored(path, lambda: reader(regular(path), Wanted()))
     columns: list[Column] = []
     numbers: dict[str, float] = {}
     seen: set[int] = set()

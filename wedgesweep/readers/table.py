@@ -89,6 +89,13 @@ def split_unit(header: str) -> tuple[str, str]:
     return (found[1].strip(), found[2].strip()) if found and found[1].strip() else (header, "")
 
 
+def unit_and_name(words: Mapping[str, str]) -> tuple[str, str]:
+    """Unit and name of samples by the words beside them; empty where there is none."""
+    known = {key.lower(): word for key, word in words.items()}
+    unit, name = (next(filter(None, map(known.get, keys)), "") for keys in (UNIT_FIELDS, NAME_FIELDS))
+    return unit, name
+
+
 def seconds_of_dates(values: Sequence[Any]) -> tuple[np.ndarray, dict[int, str]]:
     """Seconds (n,) since midnight of the first day, and faults: of texts, dates or None.
 
@@ -169,15 +176,15 @@ def _is_date(value: Any) -> bool:
 
 @dataclass(frozen=True)
 class Wanted:
-    """Variables that are asked for, out of those of a binary file."""
+    """Variables that are asked for, out of those of a binary file; all of them without any name."""
 
-    names: tuple[Name, ...]
+    names: tuple[Name, ...] = ()
 
     def __call__(self, variable: str, number: int) -> bool:
         """Whether a variable, the given one of the file from 1, is asked for; a dot may be a slash."""
         bases = [OF_A_MATRIX.sub(r"\1", name) for name in self.names if isinstance(name, str)]
         asked = {*self.names, *bases}
-        return number in asked or variable in asked or variable.replace("/", ".") in asked
+        return not asked or number in asked or variable in asked or variable.replace("/", ".") in asked
 
     def picked(self, variables: Mapping[str, Channel | None]) -> dict[Name, Channel]:
         """The channels by their names, of variables as stored; None where a variable is not asked for."""
