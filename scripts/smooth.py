@@ -20,7 +20,7 @@ from wedgesweep.systems.suspension.newton import Coefficients, loads, reactions
 Pointer = numba.types.CPointer(numba.float64)
 RECORD = compact(parameters.record("coulomb", 1.0, 1.0)).dtype
 # Nothing but friction depends on the mode here.
-MODE = ContactMode(1, 1, 1, 1, 1, 0, 0, 0)
+MODE = ContactMode(1, 1, 1, 0, 1, 1, 0, 0)
 compiled = numba.njit(error_model="numpy")
 
 

@@ -29,14 +29,14 @@ def solve(free, faces, case):
 @compiled
 def resolve(t, y, case):
     """Mode of the contacts that touch in a state, and whether it is unique."""
-    return modes.resolve(t, y, modes.touching(y, case[0]), 0, case[0])
+    return modes.resolve(t, y, modes.touching(y, 0, case[0]), case[0])
 
 
 @compiled
 def well_posed_where_a_jump_holds(t, y, case):
     """Whether a state whose column slips at a jump is well-posed, by the interface and by its forces."""
     p = case[0]
-    mode = ContactMode(HELD, 1, 0, 1, 1, 0, 0, 0)
+    mode = ContactMode(HELD, 1, 0, 0, 1, 1, 0, 0)
     return interface.well_posed(t, y, mode, p), filippov.filippov_forces(t, y, mode, p)[2]
 
 
@@ -52,7 +52,7 @@ def bilateral_mode(t, y, opening):
 def contacts_at(t, y, opening):
     """Mode of contacts that are closed and may open, and whether it is unique."""
     state, p = (y[0], y[1], 0.0, 0.0, 0.0, 0.0), opening[0]
-    return modes.resolve(t, state, modes.touching(state, p), 0, p)
+    return modes.resolve(t, state, modes.touching(state, 0, p), p)
 
 
 @compiled
@@ -84,7 +84,7 @@ def rate_at(t, y, case):
 def reactions_of_closed(t, y, case):
     """Normal forces of two closed faces that slip upwards."""
     p = case[0]
-    found = interface.contact_forces(t, y, ContactMode(1, -1, 1, 1, 1, 0, 0, 0), p)
+    found = interface.contact_forces(t, y, ContactMode(1, -1, 1, 0, 1, 1, 0, 0), p)
     return found[0], found[1]
 
 

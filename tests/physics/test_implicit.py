@@ -12,7 +12,7 @@ from wedgesweep.solvers.trajectory import Window
 from wedgesweep.systems.suspension import parameters
 from wedgesweep.systems.suspension.modes import ContactMode
 
-ON_RAMPS = ContactMode(0, 0, 0, 1, 1, 0, 0, 1)
+ON_RAMPS = ContactMode(0, 0, 0, 0, 1, 1, 0, 1)
 COLUMN = "column_compliance"
 
 

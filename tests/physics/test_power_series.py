@@ -32,7 +32,7 @@ def case(law="static-dynamic", column_angle_deg=2.5, friction=None, **suspension
 
 
 def mode_of(branches, guide=0, direction=0, segment=0):
-    return ContactMode(*branches, guide, 1, 1, direction, segment, 1 if branches[0] == 0 else 0)
+    return ContactMode(*branches, guide, direction, 1, 1, segment, 1 if branches[0] == 0 else 0)
 
 
 # Effects (SI), and what they add to a mode, as arguments of ``mode_of``.
@@ -85,7 +85,7 @@ def newtons_forces(x, u2, column_mu, bolster_mu, cases):
 
 @compiled
 def mode_while_closed():
-    return ContactMode(0, 0, 0, 1, 1, 0, 0, 1)
+    return ContactMode(0, 0, 0, 0, 1, 1, 0, 1)
 
 
 @compiled

@@ -7,8 +7,10 @@ state holds the displacement against the base (x - u) where the mass rubs on the
 a mass that sticks has a constant velocity.
 """
 
+from math import nan
+
 from wedgesweep import friction
-from wedgesweep.compiled import inlined
+from wedgesweep.compiled import inlined, inner
 from wedgesweep.effects import (
     directional_friction,
     guide_friction,
@@ -130,9 +132,9 @@ def resistance(now, y, mode, p):
     return friction_force(y, mode, p)
 
 
-@inlined
+@inner
 def powers(t, y, mode, p):
-    """Power (W) that friction and dampers take, and power of the input and the belt."""
+    """Power (W) that friction and dampers take, and power of the input and the belt; no normal forces."""
     own, pull = p.oscillator, support(t, y, mode, p)
     against = resistance(pull + applied(t, p), y, mode, p)
     rate = elongation_rate(t, y, p)
@@ -140,4 +142,4 @@ def powers(t, y, mode, p):
     supplied = applied(t, p) * y[VELOCITY] - against * own.belt_velocity
     if own.absolute and not own.forced:
         supplied += pull * velocity(t, p)
-    return taken, supplied
+    return taken, supplied, nan, nan

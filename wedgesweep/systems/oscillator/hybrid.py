@@ -16,7 +16,7 @@ from wedgesweep.effects import (
 )
 from wedgesweep.hybrid import interface
 from wedgesweep.hybrid.interface import implement
-from wedgesweep.hybrid.vectors import replaced, weighted
+from wedgesweep.hybrid.vectors import replaced
 from wedgesweep.systems.oscillator.forces import (
     elongation,
     friction_force,
@@ -26,19 +26,19 @@ from wedgesweep.systems.oscillator.forces import (
 )
 from wedgesweep.systems.oscillator.modes import HELD, VELOCITY, Mode, X, creeps, crosses, slip, stuck
 from wedgesweep.systems.oscillator.parameters import PLAIN
-from wedgesweep.systems.shared import implement_shared
+from wedgesweep.systems.shared import LOOK_AHEAD, ROUNDING, implement_shared, soon
 
 OSCILLATOR = "oscillator"
 # Pairs of event functions: ends of a slip branch or of a rod's play (the only pair without effects), segment
 # of travel, sign of the slip, time at rest.
 SLIP, TRAVEL, DIRECTION, CLOCK = 0, 2, 4, 6
 PLAIN_EVENTS, EVENTS = 2, 8
-# Phase (rad) after which a force that passes zero now exceeds rounding errors, and the share that does not.
-LOOK_AHEAD, ROUNDING = 1e-8, 1e-11
 # A jump of friction below this share of it is none.
 SMOOTH = 1e-8
 
 implement_shared(OSCILLATOR)
+implement(interface.holds, OSCILLATOR)(stuck)
+implement(interface.powers, OSCILLATOR)(powers)
 
 
 @implement(interface.event_count, PLAIN)
@@ -60,13 +60,6 @@ def event_count(p):
 def fastest(p):
     """Highest angular frequency (rad/s) of the input and of the free oscillator, which a belt drives, too."""
     return max(excitation.fastest(p), (p.oscillator.spring / p.oscillator.mass) ** 0.5)
-
-
-@implement(interface.holds, OSCILLATOR)
-@inlined
-def holds(mode, p):
-    """Whether friction keeps the velocity of the mass."""
-    return stuck(mode, p)
 
 
 @implement(interface.linear, OSCILLATOR)
@@ -101,14 +94,6 @@ def sticks(y, mode, p):
     if creeps(p):
         return abs(slip(y, p)) <= p.friction.v_t
     return abs(mode.column) != 1 and not crosses(mode)
-
-
-@implement(interface.powers, OSCILLATOR)
-@inner
-def both_powers(t, y, mode, p):
-    """Power taken and supplied."""
-    taken, supplied = powers(t, y, mode, p)
-    return taken, supplied, nan, nan
 
 
 @implement(interface.driving_force, OSCILLATOR)
@@ -276,10 +261,7 @@ def _mode_at_rest(t, y, segment, p):
 def _without_friction(t, y, segment, p):
     """Mode that follows zero slip where nothing holds the mass: the direction in which it soon moves."""
     mode = _slipping(1, y, segment, 0, p)
-    for _ in range(4):
-        moment = LOOK_AHEAD / fastest(p)
-        y = weighted(y, moment, (1.0,), (rate(t + 0.5 * moment, y, mode, p)[0],))
-        t += moment
+    y = soon(t, y, LOOK_AHEAD / fastest(p), mode, p)
     return mode if slip(y, p) >= 0.0 else _slipping(-1, y, segment, 0, p)
 
 

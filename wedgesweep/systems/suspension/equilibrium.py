@@ -4,13 +4,12 @@ from math import nan, sqrt
 
 import numpy as np
 
-from wedgesweep.compiled import compiled, inner
+from wedgesweep.compiled import compiled, inlined, inner
 from wedgesweep.effects import column_compliance, cubic_stiffness
 from wedgesweep.systems.suspension.newton import (
     NO_FRICTION,
     Coefficients,
     Loads,
-    loads_per_displacement,
     reactions,
     spring_forces,
 )
@@ -39,6 +38,14 @@ def _response(wedge, vertical, lateral, p):
     return now.acceleration, now.column_acceleration
 
 
+@inlined
+def _by_displacement(p):
+    """Change (N/m) of the forces on wedge and bolster by z, without effects."""
+    s, g = p.suspension, p.geometry
+    wedge = -s.wedge_spring * (g.column_ratio * g.cos_column - g.spring_on_bolster)
+    return wedge, -s.bolster_spring - 2.0 * g.spring_on_bolster * wedge
+
+
 @compiled
 def equilibrium(p):
     """Frictionless equilibrium z and Q (m), by Newton's method; NaN if there is none, or no stable one.
@@ -48,7 +55,7 @@ def equilibrium(p):
     """
     s, g = p.suspension, p.geometry
     lift, on_bolster = g.column_ratio * g.cos_column, g.spring_on_bolster
-    wedge_by_z, wedge_by_q = -s.wedge_spring * (lift - on_bolster), -s.wedge_spring * g.lift_ratio
+    (wedge_by_z, bolster_by_z), wedge_by_q = _by_displacement(p), -s.wedge_spring * g.lift_ratio
     cubic = cubic_stiffness.coefficient(p)
     yields, stiffness = column_compliance.acts(p), column_compliance.stiffness(p)
     close = REACHED * (s.bolster_mass * s.gravity + abs(s.wedge_preload)) / s.bolster_spring
@@ -58,8 +65,7 @@ def equilibrium(p):
         vertical = -(s.bolster_spring + cubic * z * z) * z - s.bolster_mass * s.gravity + reaction
         lateral = -stiffness * deflection
         rz, rq = _response(wedge - s.wedge_mass * s.gravity, vertical, lateral, p)
-        tangent = -s.bolster_spring - 3.0 * cubic * z * z - 2.0 * on_bolster * wedge_by_z
-        zz, qz = _response(wedge_by_z, tangent, 0.0, p)
+        zz, qz = _response(wedge_by_z, bolster_by_z - 3.0 * cubic * z * z, 0.0, p)
         if not yields:
             dz, dq, stable = -rz / zz, 0.0, zz < 0.0
         else:
@@ -76,7 +82,8 @@ def equilibrium(p):
 @compiled
 def _acceleration_per_displacement(p):
     """Derivative of z'' by z (1/s^2), without friction and effects."""
-    return reactions(loads_per_displacement(p), NO_FRICTION, p)[0].acceleration
+    wedge, bolster = _by_displacement(p)
+    return _response(wedge, bolster, 0.0, p)[0]
 
 
 def resonance(p: np.void) -> float:

@@ -18,7 +18,6 @@ from wedgesweep.systems.suspension.modes import (
     HELD,
     VELOCITY,
     X,
-    branch,
     held,
     stuck,
 )
@@ -27,8 +26,7 @@ from wedgesweep.systems.suspension.set_valued import acceleration_on_breakaway
 
 # Places of the event functions other than those of the axes: both normal forces, two ends of the segment of
 # travel, time at rest.
-COLUMN_NORMAL, BOLSTER_NORMAL = 6, 7
-TRAVEL, CLOCK = 2 * AXES, 2 * AXES + 2
+COLUMN_NORMAL, BOLSTER_NORMAL, TRAVEL, CLOCK = 2 * AXES, 2 * AXES + 1, 2 * AXES + 2, 2 * AXES + 4
 EVENTS = CLOCK + 1
 
 
@@ -63,7 +61,7 @@ def _held_events(t, y, mode, p, out):
     """Write the events of held velocities: a jump holds one while slip on both sides accelerates to it."""
     sides = np.empty((2, WIDTH))
     for axis in range(AXES):
-        if abs(branch(mode, axis)) == HELD:
+        if abs(mode[axis]) == HELD:
             both_sides(t, y, mode, axis, p, sides)
             out[2 * axis] = slip_rate(axis, t, y, sides[0, 0], sides[0, 1], p)
             out[2 * axis + 1] = -slip_rate(axis, t, y, sides[1, 0], sides[1, 1], p)
@@ -136,7 +134,7 @@ def _is_kinematic(place, mode, p):
     """Whether an event function needs no forces."""
     if stuck(mode, p) or place in (COLUMN_NORMAL, BOLSTER_NORMAL):
         return False
-    return place >= TRAVEL or abs(branch(mode, place // 2)) != HELD
+    return place >= TRAVEL or abs(mode[place // 2]) != HELD
 
 
 @inner

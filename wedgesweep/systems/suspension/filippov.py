@@ -10,7 +10,7 @@ import numpy as np
 from wedgesweep.compiled import allocating, inlined, inner
 from wedgesweep.systems.suspension.energy import friction_power
 from wedgesweep.systems.suspension.faces import slip_rate
-from wedgesweep.systems.suspension.modes import AXES, HELD, branch, held, side, with_branch
+from wedgesweep.systems.suspension.modes import AXES, HELD, held, side, with_branch
 from wedgesweep.systems.suspension.newton import Forces, forces, solve_for_signs
 
 # Numbers of a vertex: the five forces, then the power of friction.
@@ -22,7 +22,7 @@ def _vertex(mode, bits, order, p):
     """Mode at a vertex: bit i of ``bits`` is the side (1: higher) of the jump of axis ``order[i]``."""
     for i in range(order.size):
         axis = order[i]
-        mode = with_branch(mode, axis, side(branch(mode, axis), axis, (bits >> i) & 1), p)
+        mode = with_branch(mode, axis, side(mode[axis], axis, (bits >> i) & 1), p)
     return mode
 
 
@@ -36,7 +36,7 @@ def both_sides(t, y, mode, first, p, out):
     order[0] = first
     count = 1
     for axis in range(AXES):
-        if axis != first and abs(branch(mode, axis)) == HELD:
+        if axis != first and abs(mode[axis]) == HELD:
             order[count] = axis
             count += 1
     order = order[:count]
@@ -71,7 +71,7 @@ def filippov_forces(t, y, mode, p):
     """Forces and friction power (W) of a mode with held velocities, and whether they are unique."""
     sides = np.empty((2, WIDTH))
     axis = 0
-    while abs(branch(mode, axis)) != HELD:
+    while abs(mode[axis]) != HELD:
         axis += 1
     unique = both_sides(t, y, mode, axis, p, sides)
     _resolve(axis, t, y, sides[0], sides[1], p)

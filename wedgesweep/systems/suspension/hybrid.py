@@ -83,10 +83,10 @@ def observed(y, p):
 @implement(interface.sticks, SUSPENSION)
 @inlined
 def sticks(y, mode, p):
-    """Whether the column face sticks, or slips below v_t: bristles end no branch there."""
+    """Whether the column face is closed and sticks, or slips below v_t: bristles end no branch there."""
     if abs(mode.column) == 1 and presliding.acts(p) and not p.friction.set_valued:
         return abs(column_slip(y, p)) <= p.friction.v_t
-    return abs(mode.column) != 1
+    return abs(mode.column) != 1 and mode.column_sign != 0
 
 
 @implement(interface.driving_force, SUSPENSION)

@@ -4,15 +4,16 @@ from typing import NamedTuple
 
 from wedgesweep.compiled import inlined, inner
 from wedgesweep.effects import directional_friction, presliding
+from wedgesweep.hybrid.vectors import replaced
 
 # Displacement x from the frictionless equilibrium (m) and its rate: the first two states.
 X, VELOCITY = 0, 1
-# Friction axes: velocities that a jump of friction can hold. Each has two event functions, for the lower and
-# the upper end of its branch.
-COLUMN, BOLSTER, GUIDE, DIRECTION = 0, 1, 2, 4  # the event functions of the normal forces stand between
-AXES = 5
-# Places of numbers in a mode.
-SEGMENT, CLOCK = 6, 7
+# Friction axes: velocities that a jump of friction can hold. Their branches are the first numbers of a mode,
+# and each has two event functions, for the lower and the upper end of its branch.
+COLUMN, BOLSTER, GUIDE, DIRECTION = range(4)
+AXES = 4
+# Places of the other numbers of a mode.
+COLUMN_SIGN, BOLSTER_SIGN, SEGMENT, CLOCK = range(AXES, AXES + 4)
 # Branch of an axis whose slip velocity a jump at +-v_t holds (Filippov), with the sign of that velocity.
 HELD = 2
 
@@ -21,18 +22,18 @@ class ContactMode(NamedTuple):
     """Which smooth piece of the equations holds.
 
     ``column``, ``bolster``, ``guide``: slip branch (-1, 0, 1, or +-HELD) of each face; 0 is stuck under a
-    set-valued law. ``column_sign``, ``bolster_sign``: signs of the normal forces; the joints are bilateral
-    and friction acts with |N|. ``direction``: sign of z' where friction depends on it, HELD where its jump
-    holds the bolster, else 0. ``segment`` of the travel: see effects/travel.py. ``clock``: 1 while the time
+    set-valued law. ``direction``: sign of z' where friction depends on it, HELD where its jump holds the
+    bolster, else 0. ``column_sign``, ``bolster_sign``: signs of the normal forces; the joints are bilateral
+    and friction acts with |N|. ``segment`` of the travel: see effects/travel.py. ``clock``: 1 while the time
     at rest runs.
     """
 
     column: int
     bolster: int
     guide: int
+    direction: int
     column_sign: int
     bolster_sign: int
-    direction: int
     segment: int
     clock: int
 
@@ -46,48 +47,24 @@ def stuck(mode, p):
 @inlined
 def held(mode):
     """Whether the jump of a friction law holds a velocity."""
-    return (
-        abs(mode.column) == HELD
-        or abs(mode.bolster) == HELD
-        or abs(mode.guide) == HELD
-        or mode.direction == HELD
-    )
+    found = False
+    for axis in range(AXES):
+        found = found or abs(mode[axis]) == HELD
+    return found
 
 
 @inlined
-def branch(mode, axis):
-    """Branch of an axis."""
-    if axis == COLUMN:
-        return mode.column
-    if axis == BOLSTER:
-        return mode.bolster
-    if axis == GUIDE:
-        return mode.guide
-    return mode.direction if axis == DIRECTION else 0
-
-
-@inner
 def with_branch(mode, axis, value, p):
     """The mode with another branch of an axis; the time at rest runs while the column face does not slip."""
-    column, bolster, guide, column_sign, bolster_sign, direction, segment, clock = mode
-    if axis == COLUMN:
-        column = value
-        if not presliding.acts(p):
-            clock = 0 if abs(value) == 1 else 1
-    elif axis == BOLSTER:
-        bolster = value
-    elif axis == GUIDE:
-        guide = value
-    else:
-        direction = value
-    return ContactMode(column, bolster, guide, column_sign, bolster_sign, direction, segment, clock)
+    if axis == COLUMN and not presliding.acts(p):
+        mode = replaced(mode, CLOCK, 0 if abs(value) == 1 else 1)
+    return replaced(mode, axis, value)
 
 
 @inlined
 def with_signs(mode, column_sign, bolster_sign):
     """The mode with other signs of the normal forces."""
-    column, bolster, guide, _, _, direction, segment, clock = mode
-    return ContactMode(column, bolster, guide, column_sign, bolster_sign, direction, segment, clock)
+    return replaced(replaced(mode, COLUMN_SIGN, column_sign), BOLSTER_SIGN, bolster_sign)
 
 
 @inner
@@ -98,7 +75,7 @@ def slipping(direction, segment, clock, p):
     if ratio == 0.0:
         bolster = 0
     sign = direction if directional_friction.acts(p) else 0
-    return ContactMode(direction, bolster, direction, 1, 1, sign, segment, clock)
+    return ContactMode(direction, bolster, direction, sign, 1, 1, segment, clock)
 
 
 @inlined
@@ -113,7 +90,7 @@ def side(value, axis, higher):
 def next_branch(mode, place, to_jump, p):
     """Mode after a lower (even) or upper (odd) event of an axis: the next branch, or held at the jump."""
     axis, upward = place // 2, place % 2
-    now = branch(mode, axis)
+    now = mode[axis]
     if abs(now) == HELD:
         value = side(now, axis, upward)
     elif axis == DIRECTION:

@@ -26,11 +26,10 @@ from wedgesweep.effects import (
     travel,
 )
 from wedgesweep.excitation import acceleration
+from wedgesweep.systems.shared import ROUNDING
 from wedgesweep.systems.suspension.faces import coefficients
 from wedgesweep.systems.suspension.modes import VELOCITY, X, with_signs
 
-# Normal forces below this share of the loads count as zero when the consistent signs are sought.
-ROUNDING = 1e-11
 # Newton's method for coefficients that depend on the load: most iterations, and the relative change of each
 # normal force at which it ends, as the error is squared in each iteration. Near lift-off one force is no more
 # than rounding error: then the changes together must be below the last number times both forces.
@@ -158,15 +157,6 @@ def loads(t, y, mode, p):
         fixture_resonance.force(y, p),
         acceleration(t, p),
     )
-
-
-@inlined
-def loads_per_displacement(p):
-    """Change of the loads by x (N/m), without effects."""
-    s, g = p.suspension, p.geometry
-    wedge = g.spring_on_bolster * s.wedge_spring - s.wedge_spring * g.column_ratio * g.cos_column
-    bolster = -s.bolster_spring - 2.0 * g.spring_on_bolster * wedge
-    return Loads(wedge * g.cos_column, wedge * g.sin_column, bolster, 0.0, 0.0, 0.0)
 
 
 @inlined

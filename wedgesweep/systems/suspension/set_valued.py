@@ -6,10 +6,10 @@ from wedgesweep import friction
 from wedgesweep.compiled import inlined, inner, term
 from wedgesweep.excitation import acceleration
 from wedgesweep.hybrid.vectors import replaced
+from wedgesweep.systems.shared import LOOK_AHEAD, ROUNDING
 from wedgesweep.systems.suspension.faces import coefficients
 from wedgesweep.systems.suspension.modes import CLOCK, ContactMode, slipping
 from wedgesweep.systems.suspension.newton import (
-    ROUNDING,
     UNIT_BASE,
     Coefficients,
     loads,
@@ -17,9 +17,6 @@ from wedgesweep.systems.suspension.newton import (
     solve_for_signs,
     with_base,
 )
-
-# Phase (rad) after which a quantity that passes zero now exceeds rounding errors.
-LOOK_AHEAD = 1e-8
 
 
 @inner
@@ -95,7 +92,7 @@ def mode_at_zero_velocity(t, y, segment, p):
     downward = falling.acceleration + _locked_in(y, -1, segment, p)[1]
     nearly_none = ROUNDING * (p.suspension.gravity + abs(acceleration(t, p)))
     if upward <= nearly_none and downward >= -nearly_none:
-        return ContactMode(0, 0, 0, 1, 1, 0, segment, 1), unique
+        return ContactMode(0, 0, 0, 0, 1, 1, segment, 1), unique
     mode = replaced(forward if upward > 0.0 else backward, CLOCK, 0)
     if friction.static(1, y, p) == friction.sliding(0.0, p):
         return mode, unique

@@ -6,6 +6,7 @@ from wedgesweep.effects import ageing, directional_friction, hooks, presliding, 
 from wedgesweep.excitation import acceleration
 from wedgesweep.hybrid import interface
 from wedgesweep.hybrid.vectors import replaced, weighted
+from wedgesweep.systems.shared import LOOK_AHEAD, ROUNDING, soon
 from wedgesweep.systems.suspension import modes
 from wedgesweep.systems.suspension.events import BOLSTER_NORMAL, CLOCK, COLUMN_NORMAL, TRAVEL
 from wedgesweep.systems.suspension.faces import column_slip, slip_measure, slip_rate
@@ -20,21 +21,13 @@ from wedgesweep.systems.suspension.modes import (
     VELOCITY,
     ContactMode,
     X,
-    branch,
     next_branch,
     slipping,
     stuck,
     with_branch,
 )
-from wedgesweep.systems.suspension.newton import ROUNDING, Accelerations, solve_for_signs, stuck_forces
-from wedgesweep.systems.suspension.set_valued import (
-    LOOK_AHEAD,
-    breakaway_direction,
-    mode_at_zero_velocity,
-)
-
-# Short steps that the input needs to move a bolster at rest through the effects' own states.
-STEPS_FROM_REST = 4
+from wedgesweep.systems.suspension.newton import Accelerations, solve_for_signs, stuck_forces
+from wedgesweep.systems.suspension.set_valued import breakaway_direction, mode_at_zero_velocity
 
 
 @inner
@@ -52,17 +45,10 @@ def _without_age(y, mode, p):
     return y if mode.clock else ageing.rejuvenated(y, p)
 
 
-@inner
+@inlined
 def _velocity_soon(t, y, mode, p):
-    """Velocity z' (m/s) a moment later.
-
-    At the start of a run forces balance to within rounding errors, and the input may reach the bolster
-    through other states only.
-    """
-    moment = LOOK_AHEAD / p.input.omega
-    for i in range(STEPS_FROM_REST):
-        y = weighted(y, moment, (1.0,), (interface.rate(t + (i + 0.5) * moment, y, mode, p)[0],))
-    return y[VELOCITY]
+    """Velocity z' (m/s) a moment later."""
+    return soon(t, y, LOOK_AHEAD / p.input.omega, mode, p)[VELOCITY]
 
 
 @inner
@@ -97,7 +83,7 @@ def initial_mode(t, y, p):
         column = 1 if column_slip(y, p) >= 0.0 else -1
     bolster = friction.branch_at(slip_measure(BOLSTER, t, y, p), p)
     guide = friction.branch_at(y[VELOCITY], p)
-    return _with_direction(t, y, ContactMode(column, bolster, guide, 1, 1, 0, segment, clock), p)
+    return _with_direction(t, y, ContactMode(column, bolster, guide, 0, 1, 1, segment, clock), p)
 
 
 @inner
@@ -146,7 +132,7 @@ def _continuous(axis, y, p):
 def cross_discontinuity(t, y, mode, place, p):
     """Mode on the next branch, or held at the jump if the slip on the next branch accelerates back to it."""
     axis = place // 2
-    was_held = abs(branch(mode, axis)) == HELD
+    was_held = abs(mode[axis]) == HELD
     across, now, certain = resolve_mode(t, y, next_branch(mode, place, False, p), p)
     onward = slip_rate(axis, t, y, now.acceleration, now.column_acceleration, p)
     if was_held or _continuous(axis, y, p) or (onward if place % 2 else -onward) >= 0.0:

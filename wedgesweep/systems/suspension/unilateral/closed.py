@@ -7,17 +7,18 @@ from wedgesweep.compiled import inlined
 from wedgesweep.systems.suspension.faces import coefficients
 from wedgesweep.systems.suspension.modes import VELOCITY, held, stuck
 from wedgesweep.systems.suspension.sticking import carries_load_until_breakaway
-from wedgesweep.systems.suspension.unilateral.contacts import minors
+from wedgesweep.systems.suspension.unilateral.contacts import SINGULAR, regularity
 
 
 @inlined
 def _are_unique(y, mode, p):
-    """Whether closed contacts that slip are the only solution; elsewhere they never are, see ``minors``.
+    """Whether closed contacts that slip are the only solution; elsewhere they never are.
 
-    Each contact alone never locks here.
+    Principal minors of the problem are those of each face, which are positive here, and this determinant. If
+    all are positive there is exactly one solution under any load (Samelson, Thrall and Wesler, 1958).
     """
     column_mu, bolster_mu = coefficients(0.0, y, mode, p)
-    return minors(column_mu, bolster_mu, p)[2] > 0.0
+    return regularity(column_mu, bolster_mu, p) > SINGULAR
 
 
 @inlined

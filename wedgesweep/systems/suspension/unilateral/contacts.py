@@ -25,14 +25,16 @@ from typing import NamedTuple
 
 from wedgesweep.compiled import inlined, inner
 from wedgesweep.effects import fixture_resonance
+from wedgesweep.systems.shared import ROUNDING
+from wedgesweep.systems.suspension.equilibrium import determinant
+from wedgesweep.systems.suspension.newton import Coefficients, Loads, reactions
 
 # States of a face.
 OPEN, FORWARD, BACKWARD, STICK = range(4)
 STATES = 4
-# Reactions below this share of the loads count as zero.
-ROUNDING = 1e-11
-# A determinant below this share of its first product counts as zero.
-SINGULAR = 1e-9
+# A determinant D below this share of that without friction counts as zero. Accelerations grow as 1/D, and the
+# time to a pole falls as D^2: it is shorter than the shortest step of an integrator then.
+SINGULAR = 1e-6
 # Steps of the search for the force of the guide under which both faces stick; each leaves two thirds.
 SEARCH_STEPS = 60
 
@@ -232,28 +234,9 @@ def bolster_reactions(free, w, sticks, mu, p):
 
 
 @inlined
-def _by_normal_forces(w, column_mu, bolster_mu, p):
-    """Motion by a unit of N_c and of N_b on faces that slip; the coefficients are signed."""
-    g = p.geometry
-    by_bolster = _times(
-        w,
-        -(g.sin_included + bolster_mu * g.cos_included),
-        bolster_mu * g.sin_included - g.cos_included,
-        g.sin_wedge + bolster_mu * g.cos_wedge,
-    )
-    return _times(w, -column_mu, 1.0, 0.0), by_bolster
-
-
-@inlined
-def minors(column_mu, bolster_mu, p):
-    """Principal minors of the problem for faces that slip with signed coefficients: of each face, of both.
-
-    If all are positive there is exactly one solution under any load (Samelson, Thrall and Wesler, 1958). If
-    that of both faces is not, a solution in which both are closed is never the only one.
-    """
-    by_column, by_bolster = _by_normal_forces(mobility(p), column_mu, bolster_mu, p)
-    own = bolster_gap(by_bolster, p)
-    return by_column.gap, own, by_column.gap * own - by_bolster.gap * bolster_gap(by_column, p)
+def regularity(column_mu, bolster_mu, p):
+    """Determinant of both faces that slip, with signed coefficients, over that without friction."""
+    return determinant(column_mu, bolster_mu, p) / determinant(0.0, 0.0, p)
 
 
 @inlined
@@ -261,19 +244,16 @@ def _singular(faces, p):
     """Whether the reactions of two faces that slip have a pole: they change their sign, and are not zero."""
     if not (faces.slipping and faces.column and faces.bolster):
         return False
-    column, bolster, both = minors(faces.column_mu, faces.bolster_mu, p)
-    return abs(both) < SINGULAR * abs(column * bolster)
+    return abs(regularity(faces.column_mu, faces.bolster_mu, p)) < SINGULAR
 
 
 @inlined
-def both_reactions(free, w, column_mu, bolster_mu, p):
-    """Reactions if both faces are closed and slip; the coefficients are signed."""
-    by_column, by_bolster = _by_normal_forces(w, column_mu, bolster_mu, p)
-    gap, own, other = bolster_gap(free, p), bolster_gap(by_bolster, p), bolster_gap(by_column, p)
-    determinant = by_column.gap * own - by_bolster.gap * other
-    column = (by_bolster.gap * gap - own * free.gap) / determinant
-    bolster = (other * free.gap - by_column.gap * gap) / determinant
-    return Reactions(column, column_mu * column, bolster, bolster_mu * bolster)
+def both_reactions(free, column_mu, bolster_mu, p):
+    """Reactions if both faces are closed and slip, as bilateral joints; the coefficients are signed."""
+    hold = _holding(free, p)
+    load = Loads(-hold.along, hold.gap, -2.0 * hold.rise, 0.0, 0.0, 0.0)
+    now = reactions(load, Coefficients(column_mu, bolster_mu, 0.0, 0.0), p)[0]
+    return Reactions(now.column, column_mu * now.column, now.bolster, bolster_mu * now.bolster)
 
 
 @inlined
@@ -421,7 +401,7 @@ def _solution(column, bolster, problem, free, faces, p):
         column_mu, bolster_mu = _direction(column) * column_mu, _direction(bolster) * bolster_mu
     now = NOTHING
     if column != OPEN and bolster != OPEN:
-        now = both_reactions(problem.free, w, column_mu, bolster_mu, p)
+        now = both_reactions(problem.free, column_mu, bolster_mu, p)
     elif column != OPEN:
         now = column_reactions(problem.free, w, column == STICK, column_mu)
     elif bolster != OPEN:

@@ -15,27 +15,28 @@ from wedgesweep.hybrid import interface
 from wedgesweep.hybrid.interface import implement
 from wedgesweep.hybrid.state import NO_EVENT
 from wedgesweep.hybrid.vectors import replaced
-from wedgesweep.systems.suspension import energy, events, filippov, newton, transitions
+from wedgesweep.systems.suspension import energy, events, filippov, transitions
 from wedgesweep.systems.suspension import follow as bilateral
+from wedgesweep.systems.suspension.events import BOLSTER_NORMAL, CLOCK, COLUMN_NORMAL, EVENTS, TRAVEL
 from wedgesweep.systems.suspension.hybrid import forces_and_power
 from wedgesweep.systems.suspension.hybrid import linear as slips_linearly
 from wedgesweep.systems.suspension.modes import (
     BOLSTER,
     COLUMN,
+    DIRECTION,
     GUIDE,
     SEGMENT,
     VELOCITY,
     X,
-    branch,
     held,
     with_branch,
+    with_signs,
 )
 from wedgesweep.systems.suspension.newton import Accelerations
 from wedgesweep.systems.suspension.unilateral import contacts, impact
 from wedgesweep.systems.suspension.unilateral.closed import stays_closed
 from wedgesweep.systems.suspension.unilateral.contacts import bolster_gap, bolster_slip
 from wedgesweep.systems.suspension.unilateral.modes import (
-    Touching,
     bolster_touches,
     closed,
     column_touches,
@@ -62,30 +63,10 @@ from wedgesweep.systems.suspension.unilateral.motion import (
 )
 
 # Places of the event functions as for bilateral joints, with the gaps in place of the sign of z' and of the
-# time at rest. The gaps are not a pair, as one of them may close right after the other.
-COLUMN_NORMAL, BOLSTER_NORMAL, COLUMN_CLOSES, BOLSTER_CLOSES = 6, 7, 8, 12
-TRAVEL, EVENTS = 10, 13
+# time at rest. They are not a pair, as one of them may close right after the other.
+COLUMN_CLOSES, BOLSTER_CLOSES = 2 * DIRECTION, CLOCK
 
-
-@implement(interface.event_count, UNILATERAL)
-@inlined
-def event_count(p):
-    """Number of event functions."""
-    return EVENTS
-
-
-@implement(interface.holds, UNILATERAL)
-@inlined
-def holds(mode, p):
-    """Whether friction keeps the bolster at rest."""
-    return stuck(mode, p)
-
-
-@implement(interface.sticks, UNILATERAL)
-@inlined
-def sticks(y, mode, p):
-    """Whether the column face is closed and sticks, or slips below the threshold velocity."""
-    return mode.column_sign == 1 and abs(mode.column) != 1
+implement(interface.holds, UNILATERAL)(stuck)
 
 
 @implement(interface.opened, UNILATERAL)
@@ -193,48 +174,35 @@ def _stuck_events(t, y, mode, p, out):
 
 
 @inlined
-def _face_events(slip, its_branch, reaction, place, y, p, out):
-    """Write the ends of the slip branch of the only closed face, under its normal and friction force."""
-    normal, tangential = reaction
+def _branch_events(slip, branch, most, reaction, axis, p, out):
+    """Write the ends of the slip branch of an axis; at rest by its reaction and the ``most`` of it (N)."""
+    place = 2 * axis
     if not p.friction.set_valued:
-        friction.write_branch_ends(slip, p.friction.v_t, its_branch, place, out)
-    elif its_branch == 0:
-        most = friction.static(1, y, p) * normal
-        out[place], out[place + 1] = most + tangential, most - tangential
+        friction.write_branch_ends(slip, p.friction.v_t, branch, place, out)
+    elif branch == 0:
+        out[place], out[place + 1] = most + reaction, most - reaction
     else:
-        out[place if its_branch > 0 else place + 1] = its_branch * slip
-
-
-@inlined
-def _guide_events(velocity, its_branch, reaction, p, out):
-    """Write the ends of the slip branch of the guide, under its reaction (N) while it holds the bolster."""
-    if not p.friction.set_valued:
-        friction.write_branch_ends(velocity, p.friction.v_t, its_branch, 2 * GUIDE, out)
-    elif its_branch == 0:
-        most = p.guide_friction.force
-        out[2 * GUIDE], out[2 * GUIDE + 1] = most + reaction, most - reaction
-    else:
-        out[2 * GUIDE if its_branch > 0 else 2 * GUIDE + 1] = its_branch * velocity
+        out[place if branch > 0 else place + 1] = branch * slip
 
 
 @inner
 def _open_events(now, y, mode, p, out):
     """Write the event functions while a contact is open."""
-    motion = velocities(y, p)
+    motion, highest = velocities(y, p), friction.static(1, y, p)
     if guide_friction.acts(p):
-        _guide_events(y[VELOCITY], mode.guide, now.guide, p, out)
+        _branch_events(y[VELOCITY], mode.guide, p.guide_friction.force, now.guide, GUIDE, p, out)
     if mode.column_sign == 0:
         out[COLUMN_CLOSES] = gap_state(y, COLUMN_GAP)
     else:
         out[COLUMN_NORMAL] = now.column
-        reaction = now.column, now.column_friction
-        _face_events(motion.along, mode.column, reaction, 2 * COLUMN, y, p, out)
+        most = highest * now.column
+        _branch_events(motion.along, mode.column, most, now.column_friction, COLUMN, p, out)
     if mode.bolster_sign == 0:
         out[BOLSTER_CLOSES] = gap_state(y, BOLSTER_GAP)
     else:
         out[BOLSTER_NORMAL] = now.bolster
-        reaction = now.bolster, now.bolster_friction
-        _face_events(bolster_slip(motion, p), mode.bolster, reaction, 2 * BOLSTER, y, p, out)
+        slip, most = bolster_slip(motion, p), highest * now.bolster
+        _branch_events(slip, mode.bolster, most, now.bolster_friction, BOLSTER, p, out)
     if travel.acts(p):
         travel.write_events(y[X], mode.segment, p, TRAVEL, out)
 
@@ -314,28 +282,15 @@ def initial_mode(t, y, p):
 @inlined
 def _of_state(t, y, p):
     """The mode of a state whose contacts may open, and whether it is unique."""
-    return resolve(t, y, touching(y, p), travel.segment_at(y[X], p), p)
-
-
-@inlined
-def _of_mode(mode):
-    """Contacts that are closed in a mode, with its slip branches."""
-    return Touching(mode.column_sign == 1, mode.bolster_sign == 1, mode.column, mode.bolster, mode.guide)
+    return resolve(t, y, touching(y, travel.segment_at(y[X], p), p), p)
 
 
 @inlined
 def _at_rest(mode, place):
-    """The same with what came to rest, or let go, at an event: two closed faces and the guide do together."""
-    column, bolster, guide = mode.column, mode.bolster, mode.guide
-    if closed(mode):
-        column, bolster, guide = 0, 0, 0
-    elif place // 2 == COLUMN:
-        column = 0
-    elif place // 2 == BOLSTER:
-        bolster = 0
-    else:
-        guide = 0
-    return Touching(mode.column_sign == 1, mode.bolster_sign == 1, column, bolster, guide)
+    """The mode with what came to rest, or let go, at an event: two closed faces and the guide do together."""
+    if not closed(mode):
+        return replaced(mode, place // 2, 0)
+    return replaced(replaced(replaced(mode, COLUMN, 0), BOLSTER, 0), GUIDE, 0)
 
 
 @implement(interface.well_posed, UNILATERAL)
@@ -346,7 +301,7 @@ def well_posed(t, y, mode, p):
         return True
     if held(mode):
         return transitions.well_posed(t, y, mode, p)
-    return resolve(t, y, _of_mode(mode), mode.segment, p)[1]
+    return resolve(t, y, mode, p)[1]
 
 
 @inner
@@ -355,20 +310,18 @@ def _after_slip(t, y, mode, place, p):
     if p.friction.set_valued:
         if closed(mode) or place // 2 == GUIDE:
             y = replaced(y, VELOCITY, 0.0)
-        found, certain = resolve(t, y, _at_rest(mode, place), mode.segment, p)
+        found, certain = resolve(t, y, _at_rest(mode, place), p)
         # If sticking ends and the bolster sticks again at once, friction has only touched its limit. That is
         # accepted where every state is proved to be well-posed; elsewhere the case counts as locked.
         again = stuck(mode, p) and stuck(found, p)
         return y, found, certain and (not again or p.geometry.always_well_posed != 0)
     if not closed(mode):
         axis = place // 2
-        return y, with_branch(mode, axis, branch(mode, axis) + 2 * (place % 2) - 1, p), True
+        return y, with_branch(mode, axis, mode[axis] + 2 * (place % 2) - 1, p), True
     across, certain = transitions.cross_discontinuity(t, y, mode, place, p)
     if closed(across) and certain:
         return y, across, True
-    contact = Touching(True, True, across.column, across.bolster, across.guide)
-    contact = without_jump(t, y, contact, mode.segment, p)
-    found, certain = resolve(t, y, contact, mode.segment, p)
+    found, certain = resolve(t, y, without_jump(t, y, with_signs(across, 1, 1), p), p)
     return y, found, certain
 
 
@@ -399,8 +352,7 @@ def _opening(t, y, mode, unique, p):
         return _of_state(t, y, p)
     if held(mode) and closed(mode) and unique:
         return mode, True
-    contact = Touching(True, True, mode.column, mode.bolster, mode.guide)
-    return resolve(t, y, without_jump(t, y, contact, mode.segment, p), mode.segment, p)
+    return resolve(t, y, without_jump(t, y, with_signs(mode, 1, 1), p), p)
 
 
 @inner
@@ -410,11 +362,10 @@ def _of_opening(t, y, mode, place, p):
         return y, replaced(mode, SEGMENT, travel.next_segment(mode.segment, place % 2, p)), True
     if place in (COLUMN_CLOSES, BOLSTER_CLOSES):
         after = impact.closing(y, mode, place, COLUMN_CLOSES, BOLSTER_CLOSES, p)
-        found, certain = resolve(t, after.y, touching(after.y, p), mode.segment, p)
+        found, certain = resolve(t, after.y, touching(after.y, mode.segment, p), p)
         return after.y, found, certain and after.unique
     if place >= COLUMN_NORMAL:
-        contact = without_jump(t, y, _of_mode(mode), mode.segment, p)
-        found, certain = resolve(t, y, contact, mode.segment, p)
+        found, certain = resolve(t, y, without_jump(t, y, mode, p), p)
         return y, found, certain
     return _after_slip(t, y, mode, place, p)
 
@@ -431,15 +382,6 @@ def of_impact(y, mode, place, p):
 
 
 # Forces and energy
-
-
-@implement(interface.driving_force, UNILATERAL)
-@inner
-def driving_force(t, acceleration, y, mode, p):
-    """Force on the bolster (N) that gives it an acceleration; NaN while a contact is open or sticks."""
-    if stuck(mode, p) or not closed(mode):
-        return nan
-    return newton.driving_force(t, acceleration, y, mode, p)
 
 
 @implement(interface.powers, UNILATERAL)

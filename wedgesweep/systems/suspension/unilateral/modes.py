@@ -1,23 +1,22 @@
 """Modes of a wedge that may lift off: which contacts are closed, and which faces slip or stick.
 
 A mode is a ``ContactMode`` whose signs of the normal forces are 1 for a closed contact and 0 for an open
-one. The branch of an open face is 0. The bolster may rest against its guide, or slip there, while contacts
-are open.
+one. The branch of an open face is 0. Contacts that touch (gap and rate are 0), with the slip that they have,
+are such a mode as well, for which ``resolve`` finds the one that follows; under a set-valued law branch 0
+means there that a face or the guide does not slip. The bolster may rest against its guide, or slip there,
+while contacts are open.
 """
-
-from typing import NamedTuple
 
 from wedgesweep import friction
 from wedgesweep.compiled import inlined, inner
 from wedgesweep.effects import fixture_resonance, guide_friction, states
 from wedgesweep.hybrid.vectors import replaced
-from wedgesweep.systems.suspension.modes import HELD, VELOCITY, ContactMode, X
+from wedgesweep.systems.shared import LOOK_AHEAD, ROUNDING
+from wedgesweep.systems.suspension.modes import BOLSTER, COLUMN, HELD, VELOCITY, ContactMode, X
 from wedgesweep.systems.suspension.modes import stuck as both_stuck
-from wedgesweep.systems.suspension.set_valued import LOOK_AHEAD
 from wedgesweep.systems.suspension.unilateral.contacts import (
     FORWARD,
     OPEN,
-    ROUNDING,
     STICK,
     Faces,
     bolster_slip,
@@ -42,19 +41,6 @@ from wedgesweep.systems.suspension.unilateral.motion import (
 STILL = 1e-11
 # If no mode is certain at an instant, MOMENTS later ones are tried, each FARTHER times as far ahead.
 MOMENTS, FARTHER = 4, 30.0
-
-
-class Touching(NamedTuple):
-    """Contacts whose gap and its rate are 0, and the slip branches of their faces and of the guide.
-
-    Under a set-valued law branch 0 means that there is no slip.
-    """
-
-    column: bool
-    bolster: bool
-    column_branch: int
-    bolster_branch: int
-    guide_branch: int
 
 
 @inlined
@@ -98,15 +84,16 @@ def slip_branch(slip, nothing, p):
 
 
 @inner
-def touching(y, p):
-    """Contacts of a state that touch, and their slip branches."""
+def touching(y, segment, p):
+    """Contacts of a state that touch, and their slip branches; ``segment`` of the travel."""
     column, bolster = column_touches(y), bolster_touches(y)
     motion, nothing = velocities(y, p), STILL * states.scales(p)[VELOCITY]
     if column and bolster:
         nothing = 0.0 if y[VELOCITY] != 0.0 else nothing
     column_branch = slip_branch(motion.along, nothing, p)
     bolster_branch = slip_branch(bolster_slip(motion, p), nothing, p)
-    return Touching(column, bolster, column_branch, bolster_branch, slip_branch(y[VELOCITY], 0.0, p))
+    guide, signs = slip_branch(y[VELOCITY], 0.0, p), (1 if column else 0, 1 if bolster else 0)
+    return ContactMode(column_branch, bolster_branch, guide, 0, signs[0], signs[1], segment, 0)
 
 
 @inlined
@@ -118,17 +105,17 @@ def signed_coefficient(slip, branch, clock, y, p):
 @inner
 def _faces(y, contact, p):
     """The contact problem's faces at a state."""
-    slipping, guide_rests = not p.friction.set_valued, False
+    slipping, touches = not p.friction.set_valued, contact.column_sign == 1
     if not slipping:
-        slipping = (contact.column_branch if contact.column else contact.bolster_branch) != 0
-        guide_rests = contact.guide_branch == 0 and guide_friction.acts(p)
+        slipping = (contact.column if touches else contact.bolster) != 0
+    guide_rests = rests_in_guide(contact, p)
     if not slipping:
         highest = friction.static(1, y, p)
-        return Faces(contact.column, contact.bolster, False, highest, highest, guide_rests)
-    motion, clock = velocities(y, p), 1 if contact.column_branch == 0 else 0
-    column = signed_coefficient(motion.along, contact.column_branch, clock, y, p)
-    bolster = signed_coefficient(bolster_slip(motion, p), contact.bolster_branch, clock, y, p)
-    return Faces(contact.column, contact.bolster, True, column, bolster, guide_rests)
+        return Faces(touches, contact.bolster_sign == 1, False, highest, highest, guide_rests)
+    motion, clock = velocities(y, p), 1 if contact.column == 0 else 0
+    column = signed_coefficient(motion.along, contact.column, clock, y, p)
+    bolster = signed_coefficient(bolster_slip(motion, p), contact.bolster, clock, y, p)
+    return Faces(touches, contact.bolster_sign == 1, True, column, bolster, guide_rests)
 
 
 @inner
@@ -153,21 +140,21 @@ def _branch(state, branch, slipping):
 
 
 @inner
-def _mode(found, contact, faces, segment, p):
-    column = _branch(found.column, contact.column_branch, faces.slipping)
-    bolster = _branch(found.bolster, contact.bolster_branch, faces.slipping)
+def _mode(found, contact, faces, p):
+    column = _branch(found.column, contact.column, faces.slipping)
+    bolster = _branch(found.bolster, contact.bolster, faces.slipping)
     column_sign, bolster_sign = 1 if found.column != OPEN else 0, 1 if found.bolster != OPEN else 0
     clock = 1 if column == 0 else 0
     if p.friction.set_valued:
         clock = 1 if found.column == STICK and found.bolster == STICK else 0
-    guide = found.guide if faces.guide_rests else contact.guide_branch
-    return ContactMode(column, bolster, guide, column_sign, bolster_sign, 0, segment, clock)
+    guide = found.guide if faces.guide_rests else contact.guide
+    return ContactMode(column, bolster, guide, 0, column_sign, bolster_sign, contact.segment, clock)
 
 
 @inner
-def resolve(t, y, contact, segment, p):
+def resolve(t, y, contact, p):
     """The mode that follows for contacts which touch now, and whether it is unique."""
-    guide = contact.guide_branch
+    guide, segment = contact.guide, contact.segment
     free, faces = free_accelerations(t, y, segment, guide, p), _faces(y, contact, p)
     found, certain = solve(free, faces, p)
     moment, doubtful = LOOK_AHEAD / p.input.omega, ROUNDING * weight(p)
@@ -180,26 +167,25 @@ def resolve(t, y, contact, segment, p):
         found, certain = solve(there, faces, p)
         moment *= FARTHER
     unique = certain == 1 or (certain == 0 and found.margin >= -rounding(free, p))
-    return _mode(found, contact, faces, segment, p), unique
+    return _mode(found, contact, faces, p), unique
+
+
+@inlined
+def _with_branches(contact, column, bolster):
+    return replaced(replaced(contact, COLUMN, column), BOLSTER, bolster)
 
 
 @inner
-def without_jump(t, y, contact, segment, p):
+def without_jump(t, y, contact, p):
     """The same contacts, with faces that a jump held on the branch that their slip moves into."""
-    column, bolster = contact.column_branch, contact.bolster_branch
+    column, bolster = contact.column, contact.bolster
     if abs(column) != HELD and abs(bolster) != HELD:
         return contact
-    guide = contact.guide_branch
-    outer = Touching(contact.column, contact.bolster, _beyond_jump(column), _beyond_jump(bolster), guide)
-    free, faces = free_accelerations(t, y, segment, guide, p), _faces(y, outer, p)
+    outer = _with_branches(contact, _beyond_jump(column), _beyond_jump(bolster))
+    free, faces = free_accelerations(t, y, contact.segment, contact.guide, p), _faces(y, outer, p)
     motion = motion_of(solve(free, faces, p)[0], free, faces, p)
-    return Touching(
-        contact.column,
-        contact.bolster,
-        _entered(column, motion.along),
-        _entered(bolster, bolster_slip(motion, p)),
-        guide,
-    )
+    slip = bolster_slip(motion, p)
+    return _with_branches(contact, _entered(column, motion.along), _entered(bolster, slip))
 
 
 @inlined
