@@ -4,7 +4,7 @@ from wedgesweep.compiled import compiled
 from wedgesweep.hybrid import interface
 from wedgesweep.systems.suspension import filippov, set_valued, transitions
 from wedgesweep.systems.suspension.modes import HELD, ContactMode
-from wedgesweep.systems.suspension.unilateral import contacts, hybrid, impact, modes, motion
+from wedgesweep.systems.suspension.unilateral import contacts, impact, modes, motion
 from wedgesweep.systems.suspension.unilateral.closed import stays_closed
 
 
@@ -91,6 +91,4 @@ def reactions_of_closed(t, y, case):
 @compiled
 def after_bolster_closes(y, case):
     """State after the bolster face hits; before, both contacts were open."""
-    return interface.transition(0.0, y, ContactMode(0, 0, 0, 0, 0, 0, 0, 0), hybrid.BOLSTER_CLOSES, case[0])[
-        0
-    ]
+    return interface.transition(0.0, y, ContactMode(0, 0, 0, 0, 0, 0, 0, 0), modes.BOLSTER_CLOSES, case[0])[0]

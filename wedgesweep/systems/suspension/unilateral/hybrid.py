@@ -17,13 +17,12 @@ from wedgesweep.hybrid.state import NO_EVENT
 from wedgesweep.hybrid.vectors import replaced
 from wedgesweep.systems.suspension import energy, events, filippov, transitions
 from wedgesweep.systems.suspension import follow as bilateral
-from wedgesweep.systems.suspension.events import BOLSTER_NORMAL, CLOCK, COLUMN_NORMAL, EVENTS, TRAVEL
+from wedgesweep.systems.suspension.events import BOLSTER_NORMAL, COLUMN_NORMAL, EVENTS, TRAVEL
 from wedgesweep.systems.suspension.hybrid import forces_and_power
 from wedgesweep.systems.suspension.hybrid import linear as slips_linearly
 from wedgesweep.systems.suspension.modes import (
     BOLSTER,
     COLUMN,
-    DIRECTION,
     GUIDE,
     SEGMENT,
     VELOCITY,
@@ -37,6 +36,8 @@ from wedgesweep.systems.suspension.unilateral import contacts, impact
 from wedgesweep.systems.suspension.unilateral.closed import stays_closed
 from wedgesweep.systems.suspension.unilateral.contacts import bolster_gap, bolster_slip
 from wedgesweep.systems.suspension.unilateral.modes import (
+    BOLSTER_CLOSES,
+    COLUMN_CLOSES,
     bolster_touches,
     closed,
     column_touches,
@@ -61,10 +62,6 @@ from wedgesweep.systems.suspension.unilateral.motion import (
     velocities,
     with_gaps,
 )
-
-# Places of the event functions as for bilateral joints, with the gaps in place of the sign of z' and of the
-# time at rest. They are not a pair, as one of them may close right after the other.
-COLUMN_CLOSES, BOLSTER_CLOSES = 2 * DIRECTION, CLOCK
 
 implement(interface.holds, UNILATERAL)(stuck)
 
@@ -361,7 +358,7 @@ def _of_opening(t, y, mode, place, p):
     if place in (TRAVEL, TRAVEL + 1):
         return y, replaced(mode, SEGMENT, travel.next_segment(mode.segment, place % 2, p)), True
     if place in (COLUMN_CLOSES, BOLSTER_CLOSES):
-        after = impact.closing(y, mode, place, COLUMN_CLOSES, BOLSTER_CLOSES, p)
+        after = impact.closing(y, mode, place, p)
         found, certain = resolve(t, after.y, touching(after.y, mode.segment, p), p)
         return after.y, found, certain and after.unique
     if place >= COLUMN_NORMAL:
@@ -376,7 +373,7 @@ def of_impact(y, mode, place, p):
     """Whether an event is an impact, its largest normal impulse (N s) and the energy that it takes (J)."""
     if place not in (COLUMN_CLOSES, BOLSTER_CLOSES):
         return False, 0.0, 0.0
-    now = impact.closing(y, mode, place, COLUMN_CLOSES, BOLSTER_CLOSES, p)
+    now = impact.closing(y, mode, place, p)
     lost = kinetic_energy(y, p) - kinetic_energy(now.y, p)
     return True, max(now.impulses.column, now.impulses.bolster), lost
 

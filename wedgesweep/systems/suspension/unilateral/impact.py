@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 
 from wedgesweep.compiled import inlined, inner
 from wedgesweep.effects import fixture_resonance, states
-from wedgesweep.hybrid.vectors import replaced
+from wedgesweep.hybrid.vectors import combination, replaced, weighted
 from wedgesweep.systems.suspension.modes import VELOCITY
 from wedgesweep.systems.suspension.unilateral.contacts import (
     OPEN,
@@ -28,7 +28,7 @@ from wedgesweep.systems.suspension.unilateral.contacts import (
     rounding,
     solve,
 )
-from wedgesweep.systems.suspension.unilateral.modes import STILL
+from wedgesweep.systems.suspension.unilateral.modes import BOLSTER_CLOSES, COLUMN_CLOSES, STILL
 from wedgesweep.systems.suspension.unilateral.motion import (
     BOLSTER_GAP,
     BOLSTER_RATE,
@@ -51,16 +51,6 @@ class Impact(NamedTuple):
     y: Any
     impulses: Reactions
     unique: bool
-
-
-@inlined
-def _scaled(now, factor):
-    return Reactions(
-        factor * now.column,
-        factor * now.column_friction,
-        factor * now.bolster,
-        factor * now.bolster_friction,
-    )
 
 
 @inlined
@@ -89,12 +79,8 @@ def struck(y, column, bolster, restitution, p):
     unique = certain == 1 or (certain == 0 and found.margin >= -rounding(before, p))
     plastic = motion_under(before, mobility(p), found.reactions, p)
     part = 1.0 + restitution
-    change = Motion(
-        part * (plastic.along - before.along),
-        part * (plastic.gap - before.gap),
-        part * (plastic.rise - before.rise),
-    )
-    after = Motion(before.along + change.along, before.gap + change.gap, before.rise + change.rise)
+    change = Motion(*combination(part, (1.0, -1.0), (plastic, before)))
+    after = Motion(*weighted(before, 1.0, (1.0,), (change,)))
     rate_before = gap_state(y, BOLSTER_RATE)
     nothing = STILL * (states.scales(p)[VELOCITY] + abs(before.gap) + abs(rate_before))
     column_rate = _gap_rate(found.column, before.gap, after.gap, restitution, nothing)
@@ -110,7 +96,7 @@ def struck(y, column, bolster, restitution, p):
     )
     frame = fixture_resonance.velocity(y, p) + frame_jump(change, p)
     later = fixture_resonance.with_velocity(replaced(y, VELOCITY, velocity), frame, p)
-    return Impact(with_gaps(later, gaps), _scaled(found.reactions, part), unique)
+    return Impact(with_gaps(later, gaps), Reactions(*combination(part, (1.0,), (found.reactions,))), unique)
 
 
 @inlined
@@ -119,12 +105,12 @@ def _touches(gap, rate, y):
 
 
 @inner
-def closing(y, mode, place, column_closes, bolster_closes, p):
-    """The impact at the event in which a gap closes; ``column_closes``, ``bolster_closes``: its places.
+def closing(y, mode, place, p):
+    """The impact at the event in which a gap closes.
 
     A contact that has opened just now, and does not move apart yet, still takes part in it.
     """
-    column = mode.column_sign == 1 or place == column_closes or _touches(COLUMN_GAP, COLUMN_RATE, y)
-    bolster = mode.bolster_sign == 1 or place == bolster_closes or _touches(BOLSTER_GAP, BOLSTER_RATE, y)
-    approach = -gap_state(y, COLUMN_RATE if place == column_closes else BOLSTER_RATE)
+    column = mode.column_sign == 1 or place == COLUMN_CLOSES or _touches(COLUMN_GAP, COLUMN_RATE, y)
+    bolster = mode.bolster_sign == 1 or place == BOLSTER_CLOSES or _touches(BOLSTER_GAP, BOLSTER_RATE, y)
+    approach = -gap_state(y, COLUMN_RATE if place == COLUMN_CLOSES else BOLSTER_RATE)
     return struck(y, column, bolster, restitution_at(approach, p), p)

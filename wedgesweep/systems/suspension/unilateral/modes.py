@@ -12,7 +12,8 @@ from wedgesweep.compiled import inlined, inner
 from wedgesweep.effects import fixture_resonance, guide_friction, states
 from wedgesweep.hybrid.vectors import replaced
 from wedgesweep.systems.shared import LOOK_AHEAD, ROUNDING
-from wedgesweep.systems.suspension.modes import BOLSTER, COLUMN, HELD, VELOCITY, ContactMode, X
+from wedgesweep.systems.suspension.events import CLOCK
+from wedgesweep.systems.suspension.modes import BOLSTER, COLUMN, DIRECTION, HELD, VELOCITY, ContactMode, X
 from wedgesweep.systems.suspension.modes import stuck as both_stuck
 from wedgesweep.systems.suspension.unilateral.contacts import (
     FORWARD,
@@ -37,6 +38,9 @@ from wedgesweep.systems.suspension.unilateral.motion import (
     with_gaps,
 )
 
+# Places of the event functions as for bilateral joints, with the gaps in place of the sign of z' and of the
+# time at rest. They are not a pair, as one of them may close right after the other.
+COLUMN_CLOSES, BOLSTER_CLOSES = 2 * DIRECTION, CLOCK
 # Slip below this share of the input velocity counts as none under a set-valued law.
 STILL = 1e-11
 # If no mode is certain at an instant, MOMENTS later ones are tried, each FARTHER times as far ahead.
