@@ -152,6 +152,7 @@ def test_every_axis_of_a_model_counts_also_after_a_selection():
     assert ds["wedge_load_share"].diff("wear_mm").max() < 0.0
 
 
+@pytest.mark.acceptance
 def test_inputs_without_a_period_have_no_loss_a_cycle_and_oscillators_nothing():
     tables = {"sweep": {"friction_law": "coulomb"}, "solver": {"method": "event-driven"}}
     release = {"kind": "release", "displacement_mm": 0.4, "duration_s": 0.1}

@@ -10,6 +10,7 @@ from wedgesweep.solvers import event_driven, imposed_motion
 from wedgesweep.solvers.trajectory import Window
 from wedgesweep.systems.oscillator import parameters
 
+pytestmark = pytest.mark.acceptance  # a kit of kernels that no other test needs
 # Force of friction (N), play either way (m), and where the mass is let go (m).
 FRICTION, PLAY, START = 0.2, 3e-4, 4e-3
 LAWS = ("coulomb", "static-dynamic")
@@ -36,7 +37,6 @@ def turning_points(start, swings):
     return np.array(found[1:])
 
 
-@pytest.mark.acceptance
 @pytest.mark.parametrize("solver", SOLVERS)
 @pytest.mark.parametrize("law", LAWS)
 def test_free_swings_lose_the_work_of_friction_outside_of_the_play(solver, law):
@@ -55,7 +55,6 @@ def test_in_a_play_that_is_wide_enough_nothing_damps():
     assert -found.samples.x[::64] == pytest.approx(np.full(5, START), rel=1e-8)
 
 
-@pytest.mark.acceptance
 def test_friction_holds_a_mass_against_the_side_to_which_its_rod_presses_only():
     """A mass comes to rest where the spring is stretched: friction would have to pull the rod."""
     window = Window(OMEGA_N, 0, 3, 4096)
@@ -90,7 +89,6 @@ def cycle(samples, cycles=3, phase=0.3):
     return 0.01 * np.sin(angle), np.cos(angle), -np.sin(angle)
 
 
-@pytest.mark.acceptance
 @pytest.mark.parametrize("law", ["coulomb", "static-dynamic"])
 @pytest.mark.parametrize("samples", [400, 1001])
 def test_a_loop_encloses_the_work_of_friction_and_damping_outside_of_the_play(law, samples):

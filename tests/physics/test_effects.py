@@ -280,6 +280,7 @@ def pairs():
     return strategies.lists(names, min_size=1, max_size=2, unique=True).filter(go_together)
 
 
+@pytest.mark.acceptance
 @settings(max_examples=40, deadline=None)
 @given(
     law=strategies.sampled_from(LAW_NAMES),
