@@ -118,6 +118,19 @@ def test_motion_that_looks_like_noise_is_motion_for_the_most_part():
     assert RecordedInput(white, "displacement", RATE).noise_power.mean() < 0.003
 
 
+def test_a_hit_at_the_beginning_of_a_record_tells_the_mass(tmp_path):
+    """Before what is compared, any start could take its place; and a Hann window hides it."""
+    model = OSCILLATOR.replace("amplitude_mm = 1.0", 'excitation = "force"\namplitude_N = 1.0')
+    more = "[measurement.uncertain]\nbolster_mass = 0.1\nbolster_stiffness = 0.1\n"
+    hit, lighter = 40.0 * bump(0.1, 0.04), {"bolster_mass": {"scale": 0.93}}
+    path = write(tmp_path, [hit], lighter, model, "force", (2e-6, 0.01), more)
+    fit = base_fit(Search.of(transient_data(read(path)), [])).base.fit
+    assert fit.p > 1e-3
+    found = {name: own["scale"] for name, own in fit.model.uncertain.values(fit.x).items()}
+    assert found == pytest.approx({"bolster_mass": 0.93, "bolster_stiffness": 1.0}, rel=2e-3)
+    assert (np.sqrt(np.diag(fit.covariance)) < 2e-3).all()
+
+
 @pytest.mark.acceptance
 def test_a_gain_error_of_the_input_is_in_a_motion_that_was_converted_with_it(tmp_path):
     """Recorded is the motion against the ground, that against the base and its own; and 3 % less input."""

@@ -8,6 +8,7 @@ import numpy as np
 
 from wedgesweep.config import Config
 from wedgesweep.diagnose.noise_spectrum import NoiseSpectrum
+from wedgesweep.diagnose.sampled_data import LARGEST_BLOCK
 from wedgesweep.diagnose.smoothing import HIGHEST, LowPass
 from wedgesweep.diagnose.transient.recorded_input import RecordedInput, no_input, starting_at
 from wedgesweep.diagnose.transient.window import Grid, RecordWindow
@@ -68,7 +69,7 @@ class Cut(NamedTuple):
     lead: int
 
 
-def cuts(samples: int, period: float, skipped: int, fewest: int) -> list[Cut]:
+def cuts(samples: int, period: float, skipped: int, fewest: int, begins: int = 0) -> list[Cut]:
     """Windows of equal length, about WINDOW natural periods each.
 
     Parameters
@@ -81,11 +82,16 @@ def cuts(samples: int, period: float, skipped: int, fewest: int) -> list[Cut]:
         Samples at either end in which the filter of the input has not settled; 0 without an input.
     fewest : int
         Number of windows to make at least, as far as each has SHORTEST natural periods.
+    begins : int
+        Sample at which the input begins to act. Until then nothing moves that has to be forgotten, and a hit
+        in the lead would tell nothing: any start may take its place.
     """
     compared = samples - 2 * skipped
     lead = ceil((DRIVEN_LEAD if skipped else LEAD) * period)
     # The lead of the first window comes after what is skipped.
     first_lead = min(lead, int(LEAD_SHARE * compared)) if skipped else 0
+    if skipped < begins < skipped + first_lead:
+        first_lead = begins - skipped
     compared -= first_lead
     total = compared / period
     count = max(round(total / WINDOW), min(fewest, floor(total / SHORTEST)), 1)
@@ -106,8 +112,10 @@ def windows(record: Recorded, model: Config, law: str, fewest: int = 1) -> list[
     smooth = LowPass(min(top / (2.0 * pi), HIGHEST), 1.0)(displacement) - rest
     slope = np.gradient(smooth) * rate
     samples = record.channels.shape[1]
-    parts = cuts(samples, period, min(given.settling, int(LEAD_SHARE * samples)) if given else 0, fewest)
+    skipped, begins = (min(given.settling, int(LEAD_SHARE * samples)), given.begins) if given else (0, 0)
+    parts = cuts(samples, period, skipped, fewest, begins)
     input_noise = given.input_noise(record.shares) if given else None
+    most = LARGEST_BLOCK if given else samples  # noise of an input reaches no more coefficients
     found = []
     for place, (first, inside, lead) in enumerate(parts, 1):
         start, end = first - lead, first + inside
@@ -122,7 +130,7 @@ def windows(record: Recorded, model: Config, law: str, fewest: int = 1) -> list[
                 channels=record.channels[:, first:end],
                 rms=record.channels.std(axis=1),
                 spectra=tuple(record.spectra),
-                coefficients=min(max(ceil(top * inside / pi), FEWEST_COMPARED), inside),
+                coefficients=min(max(ceil(top * inside / pi), FEWEST_COMPARED), most, inside),
                 grid=Grid(lead, inside, 2.0 * pi * rate / period),
                 input=starting_at(given.acting, start / rate) if given else no_input((end - start) / rate),
                 input_noise=input_noise,

@@ -8,7 +8,7 @@ import numpy as np
 from scipy import signal
 
 from wedgesweep.diagnose.noise_bins import noise_of_record
-from wedgesweep.diagnose.noise_spectrum import NoiseSpectrum
+from wedgesweep.diagnose.noise_spectrum import NoiseSpectrum, white_noise
 from wedgesweep.diagnose.smoothing import SETTLING, derivative
 from wedgesweep.diagnose.transient.input_noise import InputNoise
 from wedgesweep.periodogram import power_of
@@ -20,6 +20,11 @@ KEPT, ORDER = 1.4, 8
 # Cut-off (cycles a sample) from which on the input is not filtered, and samples that are kept in a period of
 # the cut-off.
 HIGHEST, SAMPLED = 0.4, 8.0
+# Both ends of a record are at rest if END samples at each lie within REST standard deviations of white noise:
+# the range of twice as many normal variables is smaller in 99 % of all cases.
+END, REST = 16, 6.0
+# Share of the range of an input at which it begins to act.
+BEGINS = 0.05
 # Largest rms of the input's noise over that of the input: where all that moves the base looks like noise,
 # most of it is not.
 LARGEST_NOISE = 0.05
@@ -37,12 +42,29 @@ class RecordedInput:
 
     @cached_property
     def noise(self) -> NoiseSpectrum:
-        return noise_of_record(self.samples)
+        return noise_of_record(self._in_view)
+
+    @cached_property
+    def _in_view(self) -> np.ndarray:
+        """Samples (n,) for spectra: turned round, with the largest in the middle, if both ends are at rest.
+
+        A Hann window hides what happens near an end, such as a hit at the beginning.
+        """
+        ends = np.r_[self.samples[:END], self.samples[-END:]]
+        if np.ptp(ends) > REST * white_noise(self.samples):
+            return self.samples
+        largest = int(np.argmax(np.abs(self.samples - ends.mean())))
+        return np.roll(self.samples, self.samples.size // 2 - largest)
 
     @cached_property
     def size(self) -> float:
         """Largest value of the input about its mean."""
         return float(np.abs(self.samples - self.samples.mean()).max())
+
+    @property
+    def begins(self) -> int:
+        """Number of the sample at which the input begins to act."""
+        return int(np.argmax(np.abs(self.samples - self.samples[0]) > BEGINS * np.ptp(self.samples)))
 
     @property
     def _cutoff(self) -> float:
@@ -90,7 +112,7 @@ class RecordedInput:
     @cached_property
     def noise_power(self) -> np.ndarray:
         """Power (f,) of the noise of a sample by frequency, from 0 to half the sampling rate."""
-        given = _power(self.samples)
+        given = _power(self._in_view)
         noise = np.minimum(self.noise(np.linspace(0.0, pi, given.size)), given)
         return noise * min(LARGEST_NOISE**2 * given.sum() / max(noise.sum(), 1e-300), 1.0)
 
