@@ -54,6 +54,7 @@ def made(folder, plan, effects="", *options):
     return out / "measured.toml"
 
 
+@pytest.mark.acceptance
 def test_a_release_starts_where_it_is_told_to(tmp_path):
     first, second = read(made(tmp_path, RELEASES, "", "--level", "0")).tests
     assert [test.kind for test in (first, second)] == ["transient"] * 2

@@ -184,6 +184,7 @@ def test_bristles_that_were_at_work_before_a_window_are_simulated_from_there(tmp
     assert (fit.evaluation.chi2_by_test < 1.3 * search.data.dof).all()
 
 
+@pytest.mark.acceptance
 def test_what_happens_between_table_and_side_frame_shows_in_the_motion_against_the_side_frame(tmp_path):
     """A recorded input is that of the table; a motion against it is no longer that against the side frame."""
     path = write(tmp_path, [1e-3 * chirp()], noise=(2e-6, 1e-4))
