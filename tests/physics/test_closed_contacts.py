@@ -117,7 +117,9 @@ def assert_same(room, its, y, start):
         assert mine == pytest.approx(other, rel=1e-7, abs=1e-8 * np.abs(other).max()), name
     assert (room.sticks != its.sticks).sum() <= 1
     for name in room.sums.dtype.names:
-        assert room.sums[name] == pytest.approx(its.sums[name], rel=1e-6, abs=1e-12), name
+        # The ends of a force are read off at the quadrature nodes, which one step more may move.
+        close = 1e-5 if name.endswith(("_least", "_most")) else 1e-6
+        assert room.sums[name] == pytest.approx(its.sums[name], rel=close, abs=1e-12), name
 
 
 KINDS = {"plain": {}, "effects": EFFECTS, "stop": STOP, "series": {}}
