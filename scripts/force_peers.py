@@ -17,6 +17,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import pysindy
 import xarray as xr
+from frame_peers import sparse_fit
 from sklearn.gaussian_process import GaussianProcessRegressor
 from sklearn.gaussian_process.kernels import RBF, ConstantKernel, WhiteKernel
 
@@ -69,10 +70,7 @@ def sindy(seen: Samples) -> Predict:
         others = sign, samples.speed**2 * sign, sign * samples.place
         return samples.centred(np.column_stack([known, *others]))
 
-    force = seen.centred(seen.force)
-    scale = np.sqrt((terms(seen) ** 2).mean(axis=0)) / force.std()
-    fitted = pysindy.STLSQ(threshold=SPARSITY, alpha=0.0).fit(terms(seen) / scale, force[:, None])
-    sizes = np.ravel(fitted.coef_) / scale
+    sizes = sparse_fit(terms(seen), seen.centred(seen.force), SPARSITY)
     return lambda samples: terms(samples) @ sizes
 
 

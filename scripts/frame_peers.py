@@ -84,10 +84,15 @@ def sindy(recorded: Recorded) -> Frame:
     moving = np.abs(states[2]) > MOVING * np.abs(states[2]).max()
     terms = np.asarray(library.fit_transform(np.column_stack(states)[moving]))
     force = -real_frame.MASS * recorded.series(recorded.plate, 2)[moving]
-    sizes = np.sqrt((terms**2).mean(axis=0)) / np.sqrt((force**2).mean())
-    fitted = pysindy.STLSQ(threshold=SPARSITY, alpha=0.0).fit(terms / sizes, force[:, None])
-    stiffness, damping, cubic, friction = np.ravel(fitted.coef_) / sizes
+    stiffness, damping, cubic, friction = sparse_fit(terms, force, SPARSITY)
     return Frame(stiffness, max(damping, 0.0), friction, cubic)
+
+
+def sparse_fit(terms: np.ndarray, force: np.ndarray, least: float) -> np.ndarray:
+    """Coefficients (k,) of terms (n, k) of a force (n,); those with less than a share of its rms are 0."""
+    sizes = np.sqrt((terms**2).mean(axis=0) / (force**2).mean())
+    fitted = pysindy.STLSQ(threshold=least, alpha=0.0).fit(terms / sizes, force[:, None])
+    return np.ravel(fitted.coef_) / sizes
 
 
 METHODS: Mapping[str, Callable[[Recorded], Frame]] = {

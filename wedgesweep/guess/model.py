@@ -229,13 +229,11 @@ def _moving(test: TestRecord, load: float, restoring: Restoring) -> _Moving:
         place = low_pass(test.displacement - zero)
         velocity, acceleration = (derivative(place, rate, order) for order in (1, 2))
     elif test.velocity is not None:
-        place, velocity = np.zeros(force.size), low_pass(test.velocity)
-        acceleration = derivative(velocity, rate)
-        direct = np.sign(velocity[np.abs(velocity) >= MOVING * np.abs(velocity).max()])
-        if test.force is None and test.input is None and np.ptp(direct):  # a free motion that turns back
-            turned, half = np.cumsum(test.velocity) / rate, np.arange(force.size) >= force.size // 2
-            drift = np.polynomial.Polynomial.fit(test.time[half], turned[half], 1)
-            place = low_pass(turned - drift(test.time))
+        velocity = low_pass(test.velocity)
+        acceleration, place = derivative(velocity, rate), np.zeros(force.size)
+        direction = np.sign(velocity[np.abs(velocity) >= MOVING * np.abs(velocity).max()])
+        if test.force is None and test.input is None and np.ptp(direction):  # a free motion that turns back
+            place = low_pass(_travelled(test.velocity, rate))
     else:
         assert test.acceleration is not None
         acceleration = low_pass(test.acceleration)
@@ -245,6 +243,13 @@ def _moving(test: TestRecord, load: float, restoring: Restoring) -> _Moving:
     every = _Moving(*(each[ends] for each in (parts, low_pass(force), _share_of_stroke(velocity))))
     speed = np.abs(every.parts[:, 1])
     return _Moving(*(each[speed >= MOVING * speed.max()] for each in every))
+
+
+def _travelled(velocity: np.ndarray, rate: float) -> np.ndarray:
+    """Integral (n,) of a velocity without the drift of its second half, in which a motion comes to rest."""
+    travelled, samples = np.cumsum(velocity) / rate, np.arange(velocity.size)
+    later = samples >= velocity.size // 2
+    return np.asarray(travelled - np.polynomial.Polynomial.fit(samples[later], travelled[later], 1)(samples))
 
 
 def _share_of_stroke(velocity: np.ndarray) -> np.ndarray:

@@ -8,7 +8,7 @@ from wedgesweep.measured.declarations import LOOP, MOTIONS, STEADY
 from wedgesweep.measured.frequency import FEWEST_CYCLES, IMPROBABLE, estimate_frequency, stands_out
 from wedgesweep.measured.kinds import goes_one_way, periods
 from wedgesweep.measured.measurement import TestRecord
-from wedgesweep.measured.signals import runs_of
+from wedgesweep.measured.signals import marked_runs
 from wedgesweep.measured.stationarity import MEND, remedy
 
 # Changes over the record that are worth a warning: of the amplitude, relative; of the mean, over the rms. A
@@ -193,6 +193,6 @@ def _at_extremes(samples: np.ndarray) -> list[np.ndarray]:
 def _in_runs(marked: np.ndarray) -> np.ndarray:
     """Those of the marked samples (n,) that stand in runs of at least RUN."""
     found = np.zeros(marked.size, bool)
-    for start, end in runs_of(marked).tolist():
+    for start, end in marked_runs(marked).tolist():
         found[start:end] = end - start >= RUN
     return found

@@ -170,7 +170,7 @@ def stuck_samples(samples: np.ndarray) -> np.ndarray:
         return found
     values = samples[known]
     steps = np.abs(np.diff(values))
-    runs, typical = runs_of(steps == 0.0), float(np.median(steps))
+    runs, typical = marked_runs(steps == 0.0), float(np.median(steps))
     lengths = runs[:, 1] - runs[:, 0]
     for start, end in runs[lengths >= STUCK].tolist():
         inside = start > 0 and end < steps.size and values.min() < values[start] < values.max()
@@ -180,7 +180,7 @@ def stuck_samples(samples: np.ndarray) -> np.ndarray:
     return np.zeros(samples.size, bool) if coarse else found
 
 
-def runs_of(marked: np.ndarray) -> np.ndarray:
+def marked_runs(marked: np.ndarray) -> np.ndarray:
     """First sample and end (k, 2) of each run of marked samples (n,)."""
     return np.flatnonzero(np.diff(np.r_[False, marked, False].astype(int))).reshape(-1, 2)
 

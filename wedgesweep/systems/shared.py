@@ -6,7 +6,8 @@ from wedgesweep.effects import states, stray_vibration
 from wedgesweep.hybrid import interface
 from wedgesweep.hybrid.vectors import weighted
 
-# Phase (rad) after which a quantity that passes zero now exceeds rounding errors, and what share is one.
+# Phase (rad) after which a quantity that passes zero now exceeds rounding errors, and the share of a quantity
+# that is no more than a rounding error.
 LOOK_AHEAD, ROUNDING = 1e-8, 1e-11
 # Short steps that the input needs to move a mass at rest through the effects' own states.
 STEPS_FROM_REST = 4

@@ -22,7 +22,7 @@ from wedgesweep.diagnose.smoothing import LowPass, Motion, chosen_cutoff, contin
 from wedgesweep.effects import channel_delay, force_gain, merge
 from wedgesweep.errors import InputError
 from wedgesweep.measured import TestRecord, quality
-from wedgesweep.measured.signals import runs_of
+from wedgesweep.measured.signals import marked_runs
 from wedgesweep.solvers import imposed_motion
 
 # Below AT_REST standard deviations of its noise the velocity has no sign. Where it stays there for more than
@@ -274,7 +274,7 @@ def at_rest(motion: Motion, low_pass: LowPass) -> np.ndarray:
     speed = np.abs(motion.velocity)
     slow = speed <= max(AT_REST * motion.noise[1], RESTS * float(speed.max()))
     found = np.zeros(slow.size, bool)
-    for first, last in runs_of(slow).tolist():
+    for first, last in marked_runs(slow).tolist():
         if last - first > low_pass.stride:
             found[max(first - low_pass.stride, 0) : last + low_pass.stride] = True
     return found

@@ -42,11 +42,11 @@ class RecordedInput:
 
     @cached_property
     def noise(self) -> NoiseSpectrum:
-        return noise_of_record(self._in_view)
+        return noise_of_record(self._centred)
 
     @cached_property
-    def _in_view(self) -> np.ndarray:
-        """Samples (n,) for spectra: turned round, with the largest in the middle, if both ends are at rest.
+    def _centred(self) -> np.ndarray:
+        """Samples (n,) for spectra: shifted in a circle, the largest to the middle, if both ends are at rest.
 
         A Hann window hides what happens near an end, such as a hit at the beginning.
         """
@@ -112,7 +112,7 @@ class RecordedInput:
     @cached_property
     def noise_power(self) -> np.ndarray:
         """Power (f,) of the noise of a sample by frequency, from 0 to half the sampling rate."""
-        given = _power(self._in_view)
+        given = _power(self._centred)
         noise = np.minimum(self.noise(np.linspace(0.0, pi, given.size)), given)
         return noise * min(LARGEST_NOISE**2 * given.sum() / max(noise.sum(), 1e-300), 1.0)
 
