@@ -109,7 +109,7 @@ def next_to_breakaway() -> HarmonicData:
 def searched(data, *effects):
     """Search, base model and the best single fit of each effect."""
     search, base, *_ = base_fit(Search.of(data, effects))
-    return search, base, [single_fit(search, effect, base.fit).explanation for effect in effects]
+    return search, base, [single_fit(search, effect, base).fit for effect in effects]
 
 
 @cache
@@ -121,7 +121,7 @@ def lagging():
 
 def base_of(data):
     """The fitted base model."""
-    return base_fit(Search.of(data, ())).base.fit
+    return base_fit(Search.of(data, ())).base
 
 
 def steady_tests(fits):

@@ -60,7 +60,7 @@ def test_a_next_release_is_offered_for_the_accelerometer_that_is_there(tmp_path)
     run = made(rig, test, rate, effects)
     a = run.acceleration + noise * np.random.default_rng(1).standard_normal(run.acceleration.size)
     path = write(tmp_path, rig, [[np.arange(a.size) / rate, a]], CHANNEL.format(""))
-    base = base_fit(Search.of(data_of(read(path)), [])).base.fit
+    base = base_fit(Search.of(data_of(read(path)), [])).base
     known = base.model.data.sensors()
     assert known.orders == (2,)
     assert known.displacement_noise < 0.03 * 1e-3 * travel

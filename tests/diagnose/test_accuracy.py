@@ -9,7 +9,6 @@ import pytest
 from tests.diagnose.synthetic import LAG, base_of, drawn, searched
 from wedgesweep.diagnose import accuracy, ladder
 from wedgesweep.diagnose.cross_validation import Predictor
-from wedgesweep.diagnose.explanation import Explanation
 from wedgesweep.diagnose.fit_parameters import Hypothesis
 from wedgesweep.diagnose.least_squares import minimise
 from wedgesweep.diagnose.model import Model
@@ -131,12 +130,9 @@ def test_explanations_on_copies_of_the_data_are_rated(monkeypatch):
     """As after a fit that knows more of the records' start; the second best waits for its turn."""
     monkeypatch.setattr(ladder, "REFINED", 1)
     search, base, singles = searched(drawn(LAG), "displacement_gain", "velocity_lag")
-    fits = [each.fit for each in singles]
-    copied = [replace(fit.model.data, amplitude=fit.model.data.amplitude.copy()) for fit in fits]
-    copies = [
-        replace(fit, model=replace(fit.model, data=data)) for fit, data in zip(fits, copied, strict=True)
-    ]
-    _, one = ladder.ladder(search, base, [Explanation(fit) for fit in copies], Predictor(search.each))
+    copied = [replace(fit.model.data, amplitude=fit.model.data.amplitude.copy()) for fit in singles]
+    copies = [replace(fit, model=fit.model.on(data)) for fit, data in zip(singles, copied, strict=True)]
+    _, one = ladder.ladder(search, base, copies, Predictor(search.each))
     assert [each.effects for each in one.rated] == [("velocity_lag",), ("displacement_gain",)]
 
 

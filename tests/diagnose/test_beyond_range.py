@@ -8,7 +8,6 @@ import pytest
 from tests.diagnose.synthetic import drawn
 from wedgesweep.diagnose import verdict
 from wedgesweep.diagnose.beyond_range import effects_at_range_end, followed_beyond
-from wedgesweep.diagnose.explanation import Explanation
 from wedgesweep.diagnose.fit_parameters import Hypothesis
 from wedgesweep.diagnose.least_squares import minimise
 from wedgesweep.diagnose.result.estimates import change, interval, parameters, widen
@@ -65,7 +64,7 @@ def test_a_cause_beyond_the_range_is_named(scale):
     assert "friction_level" in search.wider
     finding = verdict.decide(base, found, verdict.thresholds_for(search.data))
     assert (finding.verdict, finding.best.effects) == (verdict.NAMED, ("friction_level",))
-    told = parameters(finding.best.fit)["friction_level"]["scale"]
+    told = parameters(finding.best)["friction_level"]["scale"]
     assert told["ci95"][0] < scale < told["ci95"][1]
     assert told["searched"] == [0.5, 2.0]
 
@@ -83,7 +82,7 @@ def test_an_interval_holds_a_number_whose_two_parts_are_at_their_ends():
 def test_a_number_inside_of_its_range_is_told_without_it():
     search, _, found, _ = explain(Search.of(friction_of(1.5), ("friction_level", "viscous_damping")))
     assert search.wider == ()
-    assert "searched" not in parameters(found[0].fit)["friction_level"]["scale"]
+    assert "searched" not in parameters(found[0])["friction_level"]["scale"]
 
 
 def test_a_number_at_an_end_of_what_is_possible_is_not_followed():
@@ -92,9 +91,9 @@ def test_a_number_at_an_end_of_what_is_possible_is_not_followed():
     model = search.model("guide_friction")
     fit = minimise(model, model.evaluate(model.start(None, np.array([0.0]))), 0)
     assert effects_at_range_end(fit) == ()
-    known = followed_beyond(Explained(search, Explanation(fit), [Explanation(fit)], {}))
+    known = followed_beyond(Explained(search, fit, [fit], {}))
     assert known.search.wider == ()
-    assert [each.fit for each in known.explanations] == [fit]
+    assert known.explanations == [fit]
 
 
 def test_an_effect_that_explains_next_to_nothing_is_not_followed():
@@ -102,12 +101,11 @@ def test_an_effect_that_explains_next_to_nothing_is_not_followed():
     search = Search.of(friction_of(2.6), ("friction_level",))
     _, base, *_ = base_fit(search)
     model = search.model("friction_level")
-    fit = minimise(model, model.evaluate(model.start(base.fit, np.array([2.0]))))
+    fit = minimise(model, model.evaluate(model.start(base, np.array([2.0]))))
     assert effects_at_range_end(fit) == ("friction_level",)
-    assert fit.chi2 < 0.9 * base.fit.chi2
-    explanation = Explanation(fit)
-    for worse, wider in ((base, ("friction_level",)), (explanation, ())):
-        assert followed_beyond(Explained(search, worse, [explanation], {})).search.wider == wider
+    assert fit.chi2 < 0.9 * base.chi2
+    for worse, wider in ((base, ("friction_level",)), (fit, ())):
+        assert followed_beyond(Explained(search, worse, [fit], {})).search.wider == wider
 
 
 def test_a_logarithm_ends_at_either_end_of_its_range():

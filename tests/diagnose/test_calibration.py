@@ -43,7 +43,7 @@ def test_a_sample_is_noise_about_the_fit(make):
 def test_a_cause_that_is_found_again_is_strong_however_small(tried, again, strong, monkeypatch):
     def explain(search):
         known = base_fit(search)
-        return known.joined([single_fit(known.search, tried, known.base.fit).explanation])
+        return known.joined([single_fit(known.search, tried, known.base).fit])
 
     monkeypatch.setattr(calibration, "SAMPLES", 3)
     monkeypatch.setattr(calibration, "explain", explain)

@@ -135,7 +135,7 @@ def test_the_load_tells_what_the_motion_leaves_tied(tmp_path, law, effect, key, 
 def _ahead(data, effect):
     """By how much chi-squared of the other one of preload and friction level is larger than of an effect."""
     _, _, (preload, friction) = searched(data, "preload", "friction_level")
-    ahead = friction.fit.chi2 - preload.fit.chi2
+    ahead = friction.chi2 - preload.chi2
     return ahead if effect == "preload" else -ahead
 
 

@@ -59,7 +59,7 @@ def test_what_is_fitted_is_the_mean_of_the_posterior(noise):
     """A linear system: the data tell the harmonics where noise is small, the prior where it is not."""
     measurement = frictionless(3, std=0.0, noise=noise, common=(SECOND, THIRD))
     data = declared(harmonic_data(measurement))
-    fit = base_fit(Search.of(data, ())).base.fit
+    fit = base_fit(Search.of(data, ())).base
     slope = free_of_start_phases(derivatives(data, fit), data.eliminated_derivatives(fit.evaluation))
     precision = np.einsum("tmi,tmj->ij", slope, slope) + np.eye(4) / (0.5 * STD**2)
     expected = np.linalg.inv(precision)
@@ -95,7 +95,7 @@ def test_a_common_distortion_as_large_as_declared_is_not_missing():
     assert finding_of(data)[1].best.effects == (DISTORTION,)
     search, found = finding_of(declared(data))
     assert found.verdict == verdict.NOTHING
-    values = Model(search.data, Hypothesis(())).uncertain.values(base_fit(search).base.fit.x)[DISTORTION]
+    values = Model(search.data, Hypothesis(())).uncertain.values(base_fit(search).base.x)[DISTORTION]
     for name in ("second", "third"):
         assert values[name] == pytest.approx(STD, rel=0.3)
 
@@ -105,7 +105,7 @@ def test_a_common_distortion_far_larger_than_declared_is_the_cause():
     assert found.verdict == verdict.NAMED
     assert found.best.effects == (DISTORTION,)
     for name in ("second", "third"):
-        assert found.best.fit.values[DISTORTION][name] == pytest.approx(10.0 * STD, rel=0.1)
+        assert found.best.values[DISTORTION][name] == pytest.approx(10.0 * STD, rel=0.1)
 
 
 @pytest.mark.acceptance
@@ -114,13 +114,13 @@ def test_a_cause_beside_a_common_distortion_is_named_alone():
     _, found = finding_of(declared(data))
     assert found.verdict == verdict.NAMED
     assert found.best.effects == ("viscous_damping",)
-    assert found.best.fit.values["viscous_damping"]["coefficient_N_s_per_m"] == pytest.approx(8.0, rel=0.05)
+    assert found.best.values["viscous_damping"]["coefficient_N_s_per_m"] == pytest.approx(8.0, rel=0.05)
 
 
 def test_the_result_tells_the_fitted_harmonics():
     measurement = frictionless(3, std=0.0, common=(SECOND, THIRD))
     found = diagnose(replace(measurement, uncertain={DISTORTION: STD}), ("viscous_damping",))
-    fitted = uncertain(found.base.fit)[DISTORTION]
+    fitted = uncertain(found.base)[DISTORTION]
     for name, truth in (("second", SECOND), ("third", THIRD)):
         assert abs(fitted[name] - abs(truth)) < 4.0 * fitted[f"{name}_std"] < 0.2 * STD
         turned = np.exp(1j * np.radians(fitted[f"{name}_phase_deg"]))

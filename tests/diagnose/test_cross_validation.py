@@ -6,7 +6,6 @@ import pytest
 from tests.diagnose.synthetic import LAG, base_of, drawn, lagging, searched
 from wedgesweep.diagnose import accuracy, cross_validation
 from wedgesweep.diagnose.cross_validation import Gain, Predictor
-from wedgesweep.diagnose.explanation import Explanation
 from wedgesweep.diagnose.ladder import forward_selection, ladder
 from wedgesweep.diagnose.least_squares import minimise
 from wedgesweep.diagnose.steady import harmonic_data, tone
@@ -26,7 +25,7 @@ def gain_of(squares):
 
 def test_gain_on_held_out_tests_reaches_the_noise():
     _, base, lag = lagging()
-    measured = cross_validation.cross_validate(base.fit, lag.fit, Predictor(serial))
+    measured = cross_validation.cross_validate(base, lag, Predictor(serial))
     assert set(measured.schemes) == {"frequency", "amplitude"}
     assert measured.excess_removed > 0.95
     assert measured.interval is None  # six tests are too few for one
@@ -46,17 +45,15 @@ def test_what_a_test_tells_of_its_own_amplitude_is_not_left_as_noise():
         left = []
         for seed in range(12):
             _, base, _ = searched(drawn(seed=seed, std=std, known=known))
-            local = cross_validation.local_numbers(base.fit)
+            local = cross_validation.local_numbers(base)
             assert ((least <= local) & (local <= most)).all()
-            left.append(
-                (base.fit.evaluation.residual**2).sum() - (base.fit.model.data.observations - local).sum()
-            )
+            left.append((base.evaluation.residual**2).sum() - (base.model.data.observations - local).sum())
         assert np.mean(left) == pytest.approx(0.0, abs=3.0 * np.sqrt(2.0 * 384 / 12))
 
 
 def test_retuning_alone_gains_nothing():
     _, base, (lag,) = searched(drawn(), "velocity_lag")
-    measured = cross_validation.cross_validate(base.fit, lag.fit, Predictor(serial))
+    measured = cross_validation.cross_validate(base, lag, Predictor(serial))
     base_square, extended, noise = measured.mean_squares()
     assert extended == pytest.approx(base_square, rel=0.02)
     assert base_square == pytest.approx(noise, rel=0.2)
@@ -67,13 +64,11 @@ def test_a_cause_that_only_the_test_left_out_shows_predicts_nothing():
     """An end stop that one test touches: without this test its clearance and stiffness may be anything."""
     data = drawn({"end_stop": {"clearance": 3.6e-4, "stiffness": 2e5}}, std=0.015)
     _, base, (stop,) = searched(data, "end_stop")
-    left = base.fit.evaluation.chi2_by_test - stop.fit.evaluation.chi2_by_test
+    left = base.evaluation.chi2_by_test - stop.evaluation.chi2_by_test
     assert np.flatnonzero(left > 100.0).tolist() == [3]
-    measured = cross_validation.cross_validate(base.fit, stop.fit, Predictor(serial))
+    measured = cross_validation.cross_validate(base, stop, Predictor(serial))
     assert measured.excess_removed == pytest.approx(0.0, abs=1e-3)
-    found, nothing = (
-        cross_validation.held_out_accuracy(fit, Predictor(serial)) for fit in (stop.fit, base.fit)
-    )
+    found, nothing = (cross_validation.held_out_accuracy(fit, Predictor(serial)) for fit in (stop, base))
     assert found == pytest.approx(nothing, rel=1e-2)
 
 
@@ -142,10 +137,10 @@ THREE = {**TWO, "bolster_mass": {"scale": 1.05}}
 def levels_after(hidden, pair):
     """Levels before and after the selection, from the fit of a pair of effects."""
     search, base, singles = searched(drawn(hidden, std=1e-3, level=0.01), *CANDIDATES)
-    known = {each.effects[0]: each.fit for each in singles}
+    known = {each.effects[0]: each for each in singles}
     model = search.model(*pair)
-    start = model.start(base.fit, [known[name].x[0] for name in pair])
-    both = Explanation(minimise(model, model.evaluate(start)))
+    start = model.start(base, [known[name].x[0] for name in pair])
+    both = minimise(model, model.evaluate(start))
     predict = Predictor(search.each)
     before = ladder(search, base, [*singles, both], predict)
     return before, forward_selection(search, singles, before, predict)

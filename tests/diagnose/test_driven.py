@@ -124,7 +124,7 @@ def test_a_hit_at_the_beginning_of_a_record_tells_the_mass(tmp_path):
     more = "[measurement.uncertain]\nbolster_mass = 0.1\nbolster_stiffness = 0.1\n"
     hit, lighter = 40.0 * bump(0.1, 0.04), {"bolster_mass": {"scale": 0.93}}
     path = write(tmp_path, [hit], lighter, model, "force", (2e-6, 0.01), more)
-    fit = base_fit(Search.of(transient_data(read(path)), [])).base.fit
+    fit = base_fit(Search.of(transient_data(read(path)), [])).base
     assert fit.p > 1e-3
     found = {name: own["scale"] for name, own in fit.model.uncertain.values(fit.x).items()}
     assert found == pytest.approx({"bolster_mass": 0.93, "bolster_stiffness": 1.0}, rel=2e-3)
@@ -142,7 +142,7 @@ def test_a_gain_error_of_the_input_is_in_a_motion_that_was_converted_with_it(tmp
     text = path.read_text().replace('"x", unit = "mm"', '"x", unit = "mm", of = "absolute"')
     path.write_text(text.replace("[measurement]\n", "[measurement]\ninput_gain_std = 0.05\n", 1))
     data = transient_data(read(path))
-    fit = base_fit(Search.of(data, [])).base.fit
+    fit = base_fit(Search.of(data, [])).base
     assert fit.p > 1e-4
     gains = np.exp(fit.point.nuisance[:, 2])
     assert gains == pytest.approx(1.03, abs=0.003)
@@ -180,7 +180,7 @@ def test_bristles_that_were_at_work_before_a_window_are_simulated_from_there(tmp
     path = write(tmp_path, [4e-3 * chirp(2.0)], {"presliding": {"length": 1e-3}}, noise=(2e-6, 1e-6))
     search = Search.of(transient_data(read(path)), ["presliding"])
     assert 0.0 < search.data.windows[0].starts_at < search.data.windows[0].begins
-    fit = single_fit(search, "presliding", base_fit(search).base.fit).explanation.fit
+    fit = single_fit(search, "presliding", base_fit(search).base).fit
     assert (fit.evaluation.chi2_by_test < 1.3 * search.data.dof).all()
 
 

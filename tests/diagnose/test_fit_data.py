@@ -158,7 +158,7 @@ def test_the_cause_is_named_and_reported(decays, monkeypatch):
     assert found.empirical is None  # decays record no motion
     (cause,), tested = found.finding.cause.effects, {each.effect: each for each in found.scores}
     assert (found.finding.verdict, cause) == ("named", "viscous_damping")
-    fit = found.finding.cause.fit
+    fit = found.finding.cause
     assert abs(fit.x[0] - TRUE) < 4.0 * np.sqrt(fit.covariance[0, 0]) < 0.2
     assert found.gain.excess_removed > 0.95
     assert all(each.testable for each in tested.values())
@@ -175,7 +175,7 @@ def test_tests_behind_one_another_are_tests_together(decays):
     """Parts keep their own nuisance parameters; the fit does not depend on how tests are divided."""
     rows = np.arange(decays.tests)
     parts = joined([decays.subset(rows[:3]), decays.subset(rows[3:])])
-    one, several = (base_fit(Search.of(data, ())).base.fit for data in (decays, parts))
+    one, several = (base_fit(Search.of(data, ())).base for data in (decays, parts))
     assert several.chi2 == pytest.approx(one.chi2, rel=1e-9)
     assert several.dof == one.dof
     assert (parts.names, joined([decays])) == (decays.names, decays)

@@ -23,7 +23,7 @@ def test_across_a_jump_the_side_without_it_counts():
 
 def test_both_sides_tell_the_same_of_a_smooth_response():
     *_, lag = lagging()
-    right, left = (jacobian(lag.fit.model, lag.fit.evaluation, side) for side in (1.0, -1.0))
+    right, left = (jacobian(lag.model, lag.evaluation, side) for side in (1.0, -1.0))
     for one, other in zip(right, left, strict=True):
         assert np.abs(one - other).max() < 0.1 * np.abs(one).max()
 
@@ -31,8 +31,8 @@ def test_both_sides_tell_the_same_of_a_smooth_response():
 def test_steps_change_no_test_by_more_than_its_noise():
     """Steps sized for a bench of usual noise, on records that are a hundred times as exact."""
     *_, (lag,) = searched(drawn(LAG, level=4e-4), "velocity_lag")
-    model = replace(lag.fit.model, tolerance=1e-9)
-    here = model.evaluate(lag.fit.point)
+    model = replace(lag.model, tolerance=1e-9)
+    here = model.evaluate(lag.point)
     found = accurate_jacobian(model, here)
     assert largest_change(model, found, step_sizes(model)) > 5.0
     sizes = step_sizes(model, found)
@@ -43,14 +43,14 @@ def test_steps_change_no_test_by_more_than_its_noise():
 
 def test_steps_change_a_test_by_more_than_the_error_of_its_simulation():
     *_, (lag,) = searched(drawn(LAG, level=4e-4), "velocity_lag")
-    model = replace(lag.fit.model, tolerance=1e-4)
-    found = jacobian(model, model.evaluate(lag.fit.point))
+    model = replace(lag.model, tolerance=1e-4)
+    found = jacobian(model, model.evaluate(lag.point))
     assert largest_change(model, found, step_sizes(model, found)) > 5.0
 
 
 def test_what_is_held_or_exact_is_not_simulated(monkeypatch):
     *_, lag = lagging()
-    model, here = lag.fit.model, lag.fit.evaluation
+    model, here = lag.model, lag.evaluation
     free, scenarios = jacobian(model, here), []
     one = type(model.data).changes
     monkeypatch.setattr(type(model.data), "changes", lambda *given: scenarios.extend(given[2]) or one(*given))
@@ -108,7 +108,7 @@ FADING = {
 
 def scored(effects=None):
     search, base, *_ = base_fit(Search.of(drawn(effects), EFFECTS))
-    return {each.effect: each for each in score_test.scores(search, base.fit, {})}
+    return {each.effect: each for each in score_test.scores(search, base, {})}
 
 
 def test_an_effect_that_is_there_scores_and_one_that_is_not_does_not():

@@ -15,7 +15,7 @@ def test_clean_data_leave_chi_squared():
     excess = []
     for seed in range(12):
         _, base, _ = searched(drawn(seed=seed))
-        excess.append((base.fit.chi2 - base.fit.dof) / np.sqrt(2.0 * base.fit.dof))
+        excess.append((base.chi2 - base.dof) / np.sqrt(2.0 * base.dof))
     assert np.mean(excess) == pytest.approx(0.0, abs=3.0 / np.sqrt(12))
     assert max(np.abs(excess)) < 4.0
 
@@ -25,7 +25,7 @@ def test_intervals_cover_the_truth():
     pulls = []
     for seed in range(15):
         _, _, (lag,) = searched(drawn(LAG, seed), "velocity_lag")
-        pulls.append((lag.fit.x[0] - 3e-4) / np.sqrt(lag.fit.covariance[0, 0]))
+        pulls.append((lag.x[0] - 3e-4) / np.sqrt(lag.covariance[0, 0]))
     assert 0.5 < np.std(pulls) < 1.6
     assert abs(np.mean(pulls)) < 1.0
 
@@ -39,10 +39,10 @@ def test_the_error_of_a_simulation_is_no_information():
         replace(s, mean=s.mean[:1], variance=s.variance[:1], level=s.level[:1]) for s in data.spectra
     )
     _, _, (stop,) = searched(replace(data, spectra=spectra), "end_stop")
-    fine = tight_refit(stop.fit)
-    coarse, std = (np.sqrt(np.diag(fit.covariance)) for fit in (stop.fit, fine))
+    fine = tight_refit(stop)
+    coarse, std = (np.sqrt(np.diag(fit.covariance)) for fit in (stop, fine))
     np.testing.assert_allclose(coarse, std, rtol=0.1)
-    assert fine.chi2 == pytest.approx(stop.fit.chi2, abs=0.1)
+    assert fine.chi2 == pytest.approx(stop.chi2, abs=0.1)
 
 
 @pytest.mark.parametrize("seed", range(2))
@@ -60,10 +60,10 @@ def test_a_fit_follows_the_valley_in_which_amplitudes_imitate_a_parameter(seed):
         model=MODEL + "[suspension]\ncolumn_angle_deg = -4.0\n",
     )
     _, _, (found,) = searched(data, "preload")
-    at_truth = found.fit.model.holding(0, 0.08)
-    start = at_truth.evaluate(replace(found.fit.point, x=np.array([0.08])))
-    assert found.fit.chi2 < minimise(at_truth, start).chi2 + 0.1
-    assert found.fit.x[0] == pytest.approx(0.08, abs=0.002)
+    at_truth = found.model.holding(0, 0.08)
+    start = at_truth.evaluate(replace(found.point, x=np.array([0.08])))
+    assert found.chi2 < minimise(at_truth, start).chi2 + 0.1
+    assert found.x[0] == pytest.approx(0.08, abs=0.002)
 
 
 def test_what_the_equations_leave_open_is_wide():

@@ -29,7 +29,7 @@ def decided(data):
     thresholds = verdict.thresholds_for(data)
     finding = verdict.decide(base, found, thresholds)
     finding, _ = refit_cause(search, base, finding, found, thresholds)
-    return finding, score_test.scores(search, base.fit, scans)
+    return finding, score_test.scores(search, base, scans)
 
 
 @pytest.mark.acceptance
@@ -38,7 +38,7 @@ def test_it_is_named_with_its_restitution():
     finding, _ = decided(measured(law, {NAME: {"restitution": restitution}}))
     assert finding.verdict == verdict.NAMED
     assert finding.best.effects == (NAME,)
-    low, high = parameters(finding.best.fit)[NAME]["restitution"]["ci95"]
+    low, high = parameters(finding.best)[NAME]["restitution"]["ci95"]
     assert low <= restitution <= high
     assert high - low < 0.5
 
@@ -61,8 +61,8 @@ def test_its_fit_finds_uncertain_numbers_of_its_own():
         uncertain={"friction_level": 0.06, "wedge_stiffness": 0.02, "bolster_mass": 0.01},
     )
     _, _, (found,) = searched(data, NAME)
-    assert found.fit.chi2 < 1.2 * data.dof.sum()
-    assert found.fit.values[NAME]["restitution"] == pytest.approx(restitution, abs=0.05)
+    assert found.chi2 < 1.2 * data.dof.sum()
+    assert found.values[NAME]["restitution"] == pytest.approx(restitution, abs=0.05)
 
 
 @pytest.mark.acceptance
@@ -79,7 +79,7 @@ def test_a_bench_whose_joints_hold_misses_nothing_though_they_pull():
 def test_tests_in_which_nothing_lifts_off_cannot_show_it():
     data = measured("coulomb", {NAME: {"restitution": 0.3}}, QUIET)
     search, base, *_ = base_fit(Search.of(data, (NAME,)))
-    (score,) = score_test.scores(search, base.fit, {})
+    (score,) = score_test.scores(search, base, {})
     assert not score.testable
     assert verdict.decide(base, [], verdict.DEFAULT).verdict == verdict.NOTHING
 
@@ -130,5 +130,5 @@ def test_it_is_named_with_its_share(locked_in):
     finding = verdict.decide(base, explanations, verdict.thresholds_for(data))
     assert finding.verdict == verdict.NAMED
     assert finding.best.effects == ("jamming",)
-    low, high = parameters(finding.best.fit)["jamming"]["locked_in"]["ci95"]
+    low, high = parameters(finding.best)["jamming"]["locked_in"]["ci95"]
     assert low <= locked_in <= high

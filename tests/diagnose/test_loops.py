@@ -148,7 +148,7 @@ def test_misfit_of_the_true_model_is_noise(tmp_path, bench):
         (tmp_path / str(seed)).mkdir()
         data = loop_data(read(write(tmp_path / str(seed), model, motions=motions, noise=noise, seed=seed)))
         assert data.recordings[0].known.mean() > 0.75  # reversals are compared, too
-        fits.append(base_fit(Search.of(data, [])).base.fit)
+        fits.append(base_fit(Search.of(data, [])).base)
     # The noise that is assumed is the upper end of its interval.
     assert 0.8 < np.mean([fit.chi2 / fit.dof for fit in fits]) < 1.1
     assert min(fit.p for fit in fits) > POSSIBLE
@@ -159,7 +159,7 @@ def test_an_effect_of_a_few_times_the_noise_is_found(tmp_path):
     weak = {"friction_level": {"scale": 1.02}}
     path = write(tmp_path, WEDGE, weak, motions=((2e-4, 1.5, 10.0),), noise=(1e-6, 0.01))
     data = loop_data(read(path))
-    fit = base_fit(Search.of(data, [])).base.fit
+    fit = base_fit(Search.of(data, [])).base
     left = float(np.sqrt((fit.evaluation.residual**2).sum() / data.weight.sum()))
     assert left < 7.0  # of the noise
     found = diagnosed(path, ("preload", "bolster_stiffness", "presliding", *weak))

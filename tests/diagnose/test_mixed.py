@@ -39,7 +39,7 @@ def test_each_kind_sees_its_own_channels(tmp_path):
 
 def test_subsets_and_derivatives_are_those_of_each_kind(tmp_path):
     data = data_of(read(write(tmp_path)))
-    fit = base_fit(Search.of(data, [])).base.fit
+    fit = base_fit(Search.of(data, [])).base
     releases, loops = data.parts
     assert fit.chi2 == pytest.approx(sum(each.chi2 for each in data.fits(fit)))
     rows = np.array([1, data.tests - 1])
@@ -96,7 +96,7 @@ def test_gains_of_inputs_belong_to_the_tests_that_have_one(tmp_path):
     (tmp_path / "measured.toml").write_text(text)
     data = data_of(read(tmp_path / "measured.toml"))
     assert all("input_gain" in part.uncertain for part in data.parts)
-    fit = base_fit(Search.of(data, [])).base.fit
+    fit = base_fit(Search.of(data, [])).base
     for test in range(data.tests):
         alone = Search.of(data.subset(np.array([test])), []).model()
         found = alone.evaluate(fit.point.subset(np.array([test]))).chi2

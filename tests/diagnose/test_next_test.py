@@ -86,8 +86,7 @@ def test_where_none_tells_enough_the_farthest_is_chosen():
 def test_what_the_tests_leave_open_only_makes_a_next_test_tell_less():
     """Covariances as large as 1e30 stand for numbers of which the tests say nothing."""
     data = drawn({"velocity_lag": {"time": 3e-4}}, known=False)
-    *_, singles = searched(data, "velocity_lag", "displacement_gain")
-    found = [each.fit for each in singles]
+    *_, found = searched(data, "velocity_lag", "displacement_gain")
     usual, undetermined = (
         offered(
             steady_tests(found), [replace(fit, covariance=factor * fit.covariance) for fit in found]

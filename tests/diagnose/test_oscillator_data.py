@@ -124,6 +124,6 @@ def test_what_is_hidden_under_a_force_is_found(tmp_path, monkeypatch, effect, hi
     )
     found = diagnose(measured.read(tmp_path / "made" / "measured.toml"), candidates)
     assert (found.finding.verdict, found.finding.best.effects) == ("named", (effect,))
-    assert found.finding.best.fit.values[effect] == pytest.approx(hidden, rel=0.05)
+    assert found.finding.best.values[effect] == pytest.approx(hidden, rel=0.05)
     # In the range that is searched, not beyond it.
-    assert found.finding.best.fit.model.hypothesis.wider == ()
+    assert found.finding.best.model.hypothesis.wider == ()

@@ -41,7 +41,7 @@ def test_numbers_of_the_right_effect_are_constant_as_often_as_chance_has_it(effe
 
 def test_a_number_that_changes_in_the_session_is_found_long_before_noise_is_exceeded():
     _, _, (single,) = searched(worn(1.10, 1.114), "friction_level")
-    assert single.fit.p > verdict.ADEQUATE
+    assert single.p > verdict.ADEQUATE
     assert single.constancy.p < 1e-6
     assert single.constancy.parameter == "friction_level.scale"
 
@@ -49,14 +49,14 @@ def test_a_number_that_changes_in_the_session_is_found_long_before_noise_is_exce
 def test_what_changes_in_the_session_is_not_named():
     data = worn(1.10, 1.114)
     _, base, found, _ = stages.explain(Search.of(data, ("friction_level",)))
-    assert base.fit.excess > verdict.STRONG
+    assert base.excess > verdict.STRONG
     assert verdict.decide(base, found, verdict.DEFAULT).verdict == "none-of-mine"
 
 
 def test_what_changes_in_the_session_limits_the_accuracy():
     """Noise alone would allow any accuracy. A change of 1.3 % makes errors of less than half of that."""
     _, _, (same,) = searched(worn(1.10, 1.10), "friction_level")
-    assert accuracy.with_constant_parameters(same.fit) == 0.0
+    assert accuracy.with_constant_parameters(same) == 0.0
     search, base, found, _ = stages.explain(Search.of(worn(1.10, 1.114), ("friction_level",)))
     levels = ladder.ladder(search, base, found, Predictor(search.each))
     assert 1e-4 < levels[1].best.accuracy < 0.5 * 0.013
@@ -65,13 +65,13 @@ def test_what_changes_in_the_session_limits_the_accuracy():
     assert finding.verdict == "consistent-with"
     assert finding.numbers["parameter"] == "friction_level.scale"
     _, _, (worse,) = searched(worn(1.10, 1.128), "friction_level")
-    assert accuracy.with_constant_parameters(worse.fit) > 2.0 * levels[1].best.accuracy
+    assert accuracy.with_constant_parameters(worse) > 2.0 * levels[1].best.accuracy
 
 
 def test_the_base_model_and_a_single_test_have_nothing_that_could_differ():
     _, base, (single,) = searched(drawn(tests=[0]), "friction_level")
-    assert parameter_constancy(base.fit) == (1.0, None)
-    assert parameter_constancy(single.fit).p == pytest.approx(1.0)
+    assert parameter_constancy(base) == (1.0, None)
+    assert parameter_constancy(single).p == pytest.approx(1.0)
 
 
 def test_what_a_fit_leaves_is_out_of_the_reach_of_all_that_was_fitted():
@@ -79,14 +79,14 @@ def test_what_a_fit_leaves_is_out_of_the_reach_of_all_that_was_fitted():
     off = 0.03 * np.array([1.0, -1.0, 1.0, 1.0, -1.0, 1.0])
     data = drawn({"friction_level": {"scale": 1.1}}, uncertain={"wedge_stiffness": 0.05}, off=off)
     _, _, (single,) = searched(data, "friction_level")
-    pulls = (single.fit.evaluation.nuisance_prior**2).sum()
+    pulls = (single.evaluation.nuisance_prior**2).sum()
     assert pulls > 5.0
-    assert (Projector(single.fit).misfit ** 2).sum() == pytest.approx(single.fit.chi2, abs=0.02 * pulls)
+    assert (Projector(single).misfit ** 2).sum() == pytest.approx(single.chi2, abs=0.02 * pulls)
 
 
 def test_of_two_numbers_either_may_seem_not_to_be_constant_by_chance():
     _, _, (single,) = searched(drawn({"cross_slip": RIGHT["cross_slip"]}, seed=4), "cross_slip")
-    project = Projector(single.fit)
+    project = Projector(single)
     alone = [_p_constant(project, tangent) for tangent in np.moveaxis(project.by_parameter, -1, 0)]
     assert min(alone) < 0.5
     assert single.constancy.p == pytest.approx(2.0 * min(alone))

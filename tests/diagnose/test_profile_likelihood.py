@@ -24,7 +24,7 @@ def std(fit):
 @pytest.fixture(scope="module")
 def lag():
     *_, single = lagging()
-    return tight_refit(single.fit)
+    return tight_refit(single)
 
 
 def test_an_interval_widens_to_the_rise_of_chi2_and_is_no_narrower_than_by_the_curvature(lag):
@@ -65,7 +65,7 @@ def compliance(level):
     _, _, (single,) = searched(
         drawn({"column_compliance": {"stiffness": 1e6}}, level=level), "column_compliance"
     )
-    fit = tight_refit(single.fit)
+    fit = tight_refit(single)
     return fit, profile_likelihood(fit, serial)
 
 
@@ -86,7 +86,7 @@ def test_rugged_chi2_widens_the_interval():
 def test_no_number_is_tried_beyond_its_bound(monkeypatch):
     """Clean data: the lag is zero or next to it, and less than zero it cannot be."""
     _, _, (single,) = searched(drawn(), "velocity_lag")
-    fit = tight_refit(single.fit)
+    fit = tight_refit(single)
     assert fit.x[0] < 1.9 * std(fit)[0]
     tried, holding = [], Model.holding
 

@@ -172,7 +172,7 @@ def test_the_cause_is_named_and_the_distortion_is_not_blamed():
     found = diagnose(measurement(1, CAUSE), ("guide_friction", "friction_level", "input_distortion"))
     assert found.finding.verdict in ("named", "consistent-with")
     assert found.finding.best.effects == ("guide_friction",)
-    value = found.finding.best.fit.values["guide_friction"]["force_N"]
+    value = found.finding.best.values["guide_friction"]["force_N"]
     assert value == pytest.approx(0.3, rel=0.1)
 
 
@@ -210,7 +210,7 @@ def test_a_diagnosis_ends_with_the_covariance_of_its_cause():
     found = diagnose(stiff(1), ("bolster_stiffness", "viscous_damping"))
     assert found.finding.verdict in ("named", "consistent-with")
     assert found.finding.best.effects == ("bolster_stiffness",)
-    fit = found.finding.best.fit
+    fit = found.finding.best
     assert found.data.renewed(fit.model.scenario(fit.point)) is found.data
     assert fit.model.data is found.data
 
@@ -285,6 +285,6 @@ def test_numbers_of_single_tests_are_part_of_the_model():
     assert found.finding.best.effects == ("guide_friction",)
     assert found.finding.verdict in ("named", "consistent-with")
     unknown = replace(given, tests=tuple(replace(test, model={}) for test in given.tests))
-    scenario = Scenario(CAUSE, found.finding.best.fit.point)
+    scenario = Scenario(CAUSE, found.finding.best.point)
     q = [(harmonic_data(each).compare([scenario], 1e-6)[0].residual ** 2).sum() for each in (given, unknown)]
     assert 100.0 * q[0] < q[1]

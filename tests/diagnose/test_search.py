@@ -8,7 +8,6 @@ import pytest
 
 from tests.diagnose.synthetic import MODEL, base_of, drawn, next_to_breakaway, searched
 from wedgesweep.diagnose import pairs, stages
-from wedgesweep.diagnose.explanation import Explanation
 from wedgesweep.diagnose.least_squares import minimise
 from wedgesweep.diagnose.search import (
     Explained,
@@ -43,9 +42,9 @@ def test_an_effect_with_which_the_base_model_fits_implausibly_starts_without_it(
         {"presliding": {"length": length}}, bench=bench, std=0.01, uncertain={"friction_level": 0.02}
     )
     _, base, (found,) = searched(data, "presliding")
-    assert np.abs(base.fit.evaluation.point.nuisance[:, 0]).max() > 1.0
-    assert found.fit.p > 1e-3
-    assert found.fit.values["presliding"]["length_mm"] == pytest.approx(1e3 * length, rel=0.05)
+    assert np.abs(base.evaluation.point.nuisance[:, 0]).max() > 1.0
+    assert found.p > 1e-3
+    assert found.values["presliding"]["length_mm"] == pytest.approx(1e3 * length, rel=0.05)
 
 
 @pytest.mark.acceptance
@@ -54,20 +53,20 @@ def test_an_effect_is_fitted_beside_what_is_stated_where_the_base_model_needs_ot
     stds = {"bolster_stiffness": 0.01, "wedge_stiffness": 0.01, "bolster_mass": 0.005, "friction_level": 0.03}
     hidden = {"stribeck": {"peak": 0.0578, "velocity": 36.4e-3}}
     search, base, *_ = base_fit(Search.of(clean(effects=hidden, uncertain=stds), ("stribeck",)))
-    assert base.fit.implausible
+    assert base.implausible
     model = search.model("stribeck")
     started = model.evaluate_all([model.start(None, x) for x in model.hypothesis.starts()[::5]])
     ended = beside_stated(model, started)
     for each in ended:
         np.testing.assert_array_equal(each.point.x[model.size :], model.uncertain.mean)
     assert min(each.chi2 for each in ended) < 0.5 * min(each.chi2 for each in started)
-    assert single_fit(search, "stribeck", base.fit).explanation.fit.p > 1e-3
+    assert single_fit(search, "stribeck", base).fit.p > 1e-3
 
 
 def test_an_undetected_tone_leaves_nothing_to_fit():
     search = Search.of(drawn({"viscous_damping": {"coefficient": 8.0}}), ("stray_vibration",))
     _, base, found, _ = stages.explain(search)
-    assert base.fit.p < 1e-9
+    assert base.p < 1e-9
     assert found == []
 
 
@@ -132,11 +131,11 @@ def test_the_base_model_goes_on_from_where_an_extension_got(monkeypatch):
         )
         alone.setattr("wedgesweep.diagnose.search._nuisances_held", lambda model, evaluation: evaluation)
         short = base_fit(search).base
-    assert short.fit.p < 1e-9
+    assert short.p < 1e-9
     model = search.model("velocity_lag")
-    there = model.evaluate(model.start(base_fit(search).base.fit, model.hypothesis.low))
-    again = refit_base(Explained(search, short, [Explanation(minimise(model, there))], {})).base
-    assert again.fit.p > 1e-3
+    there = model.evaluate(model.start(base_fit(search).base, model.hypothesis.low))
+    again = refit_base(Explained(search, short, [minimise(model, there)], {})).base
+    assert again.p > 1e-3
     assert refit_base(Explained(search, again, [short], {})).base is again
 
 
@@ -147,21 +146,21 @@ CANDIDATES = (*TRUTH, "bolster_mass")
 
 def test_pairs_are_found_whose_effects_do_not_lead_alone():
     search, base, singles, scans = single_fits(base_fit(Search.of(drawn(TRUTH), CANDIDATES)))
-    assert min(singles, key=lambda each: each.fit.chi2).effects == ("bolster_mass",)
-    best = pairs.fit_pairs(search, base.fit, singles, scans)[0]
+    assert min(singles, key=lambda each: each.chi2).effects == ("bolster_mass",)
+    best = pairs.fit_pairs(search, base, singles, scans)[0]
     assert set(best.effects) == set(TRUTH)
-    assert best.fit.p > 1e-3
+    assert best.p > 1e-3
 
 
 @pytest.mark.acceptance
 def test_where_responses_do_not_add_the_second_effect_begins_with_nothing():
     """By every start of the damper that was tried a test sticks."""
     search, base, *_ = base_fit(Search.of(next_to_breakaway(), ("stribeck", "viscous_damping")))
-    damper, stribecks = (single_fit(search, effect, base.fit) for effect in ("viscous_damping", "stribeck"))
+    damper, stribecks = (single_fit(search, effect, base) for effect in ("viscous_damping", "stribeck"))
     model = search.model("stribeck")
-    stribeck = minimise(model, model.evaluate(model.start(base.fit, np.array([6e-3, -0.43]))), 3)
-    first = pairs.single_scan(base.fit, stribeck, stribecks.scan)
-    second = pairs.single_scan(base.fit, damper.explanation.fit, damper.scan)
+    stribeck = minimise(model, model.evaluate(model.start(base, np.array([6e-3, -0.43]))), 3)
+    first = pairs.single_scan(base, stribeck, stribecks.scan)
+    second = pairs.single_scan(base, damper.fit, damper.scan)
     begun = pairs.starting_fit(search, pairs.Combination(first, second))
     assert begun.chi2 < pairs.BEHIND * first.subset.chi2
 

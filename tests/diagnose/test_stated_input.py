@@ -174,7 +174,7 @@ def test_a_distortion_ten_times_as_large_is_named():
     search, found = finding_of(data)
     assert found.verdict == verdict.NAMED
     assert found.best.effects == ("input_distortion",)
-    fit = found.best.fit
+    fit = found.best
     for name in ("second", "third"):
         assert fit.values["input_distortion"][name] == pytest.approx(10.0 * STD, rel=0.1)
     assert fit.model.data is search.data
@@ -189,7 +189,7 @@ def test_a_cause_beside_a_distortion_as_large_as_declared_is_named_alone():
     _, found = finding_of(with_uncertain_harmonics(data, STD))
     assert found.verdict == verdict.NAMED
     assert found.best.effects == ("viscous_damping",)
-    assert found.best.fit.values["viscous_damping"]["coefficient_N_s_per_m"] == pytest.approx(8.0, rel=0.05)
+    assert found.best.values["viscous_damping"]["coefficient_N_s_per_m"] == pytest.approx(8.0, rel=0.05)
 
 
 def test_a_model_that_distorts_is_distorted_further():

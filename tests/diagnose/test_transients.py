@@ -74,7 +74,7 @@ def write(
 
 def test_starts_and_zero_are_found_and_the_misfit_is_noise(tmp_path):
     data = transient_data(read(write(tmp_path)))
-    fit = base_fit(Search.of(data, [])).base.fit
+    fit = base_fit(Search.of(data, [])).base
     assert 0.75 < fit.chi2 / fit.dof < 1.05
     assert data.starts(fit.point) == pytest.approx(np.array(STARTS), abs=5e-4)
     assert data.zero(data.measured - fit.evaluation.response)[0] == pytest.approx(ZERO, abs=1e-5)
@@ -178,7 +178,7 @@ def test_a_test_with_numbers_of_its_own_is_the_same_beside_others_and_alone(tmp_
         tests[name] = (np.arange(1500) / 500.0, 1e3 * x), TRANSIENT + more
     measurement = read(saved(tmp_path, OSCILLATOR, HEAD + PLACE, "t,x", tests))
     data = transient_data(measurement)
-    point = base_fit(Search.of(data, [])).base.fit.point
+    point = base_fit(Search.of(data, [])).base.point
     for test in range(data.tests):
         rows = np.array([test])
         alone = data.subset(rows).starts(point.subset(rows))

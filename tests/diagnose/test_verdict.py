@@ -4,12 +4,12 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from scipy.stats import chi2
 
 from wedgesweep.diagnose import diagnosis, ladder, verdict
-from wedgesweep.diagnose.explanation import POSSIBLE, Explanation
+from wedgesweep.diagnose.explanation import POSSIBLE
 from wedgesweep.diagnose.fit_parameters import Hypothesis
 from wedgesweep.diagnose.ladder import Level, Rated
+from wedgesweep.diagnose.model import IMPLAUSIBLE, Fit
 from wedgesweep.diagnose.parameter_constancy import Constancy
 from wedgesweep.diagnose.verdict import Thresholds, decide, on_held_out_tests, p_where_it_shows
 from wedgesweep.diagnosis_result import Reason
@@ -31,6 +31,7 @@ def explained(
     relaxed=None,
     power=100.0,
     vanishes=False,
+    converged=True,
 ):
     """An explanation.
 
@@ -51,26 +52,22 @@ def explained(
             compared_again=lambda evaluation: SimpleNamespace(chi2=relaxed if size > MODEL_ERROR else q)
         ),
     )
-    hypothesis = SimpleNamespace(vanishes=lambda x: vanishes)
-    size = numbers * len(effects)
-    model = SimpleNamespace(data=data, size=size, values=lambda x: values, hypothesis=hypothesis)
-    fit = SimpleNamespace(
-        chi2=q,
-        dof=DOF,
-        excess=q - DOF,
-        p=float(chi2.sf(q, DOF)),
-        model=model,
-        evaluation=SimpleNamespace(chi2_by_test=np.full(tests, q / tests) if by_test is None else by_test),
+    model = SimpleNamespace(
+        data=data,
         effects=effects,
-        x=None,
-        implausible=far,
-        converged=True,
+        size=numbers * len(effects),
+        dof=DOF,
+        values=lambda x: values,
+        hypothesis=SimpleNamespace(vanishes=lambda x: vanishes),
+        uncertain=SimpleNamespace(numbers=[SimpleNamespace(effect=name) for name in far]),
     )
-    return priced(fit, constant)
-
-
-def priced(fit, constant=1.0):
-    found = Explanation(fit)
+    evaluation = SimpleNamespace(
+        chi2=q,
+        chi2_by_test=np.full(tests, q / tests) if by_test is None else by_test,
+        uncertain_prior=np.full(len(far), 2.0 * IMPLAUSIBLE),
+        point=SimpleNamespace(x=None),
+    )
+    found = Fit(model, evaluation, None, converged)
     vars(found)["constancy"] = Constancy(constant, None)
     return found
 
@@ -111,7 +108,7 @@ def test_a_model_error_may_be_larger_in_single_tests():
         by_test = np.where(np.arange(12) < 2, q * DOF / 12, 30.0)
         base = explained(5000.0, by_test=loud, error=error)
         best = explained(600.0, "stribeck", by_test=by_test, error=error)
-        assert least <= p_where_it_shows(base.fit, best.fit) <= most
+        assert least <= p_where_it_shows(base, best) <= most
 
 
 def test_two_numbers_of_the_model_may_stand_for_a_third():
@@ -187,14 +184,14 @@ def test_tests_that_show_nothing_cannot_make_up_for_a_misfit():
     several = [explained(q.sum(), "stribeck", by_test=q) for q in (right, doubtful, wrong)]
     found = [verdict_of(start, each) for each in several]
     assert [each.verdict for each in found] == ["named", "consistent-with", "none-of-mine"]
-    assert chi2.sf(doubtful.sum(), DOF) > chi2.sf(wrong.sum(), DOF) > verdict.ADEQUATE
+    assert several[1].p > several[2].p > verdict.ADEQUATE
     # With a failure on held-out tests it leaves no cause.
-    assert several[1].fit.p > verdict.ADEQUATE > p_where_it_shows(start.fit, several[1].fit)
+    assert several[1].p > verdict.ADEQUATE > p_where_it_shows(start, several[1])
     unconfirmed = on_held_out_tests(found[1], start, 0.5, [-0.3, 1.0])
     assert (unconfirmed.verdict, unconfirmed.best) == ("none-of-mine", several[1])
     # Where nothing shows, all that is left counts.
     quiet = explained(600.0)
-    assert p_where_it_shows(quiet.fit, quiet.fit) > 0.0
+    assert p_where_it_shows(quiet, quiet) > 0.0
 
 
 @pytest.mark.parametrize(
@@ -229,11 +226,11 @@ def test_what_held_out_tests_do_not_confirm_names_nothing():
     best, rival = explained(793.0, "stribeck"), explained(787.0, "preload", "end_stop")
     found = verdict_of(base, best, rival)
     assert (found.verdict, found.best, found.rivals) == ("tied", best, (rival,))
-    assert rival.fit.p > verdict.ADEQUATE > best.fit.p
+    assert rival.p > verdict.ADEQUATE > best.p
     assert on_held_out_tests(found, base, *unsure).verdict == "data-insufficient"
     # A tolerable base model needs no such cause.
     base = explained(830.0)
-    assert verdict.TOLERABLE < base.fit.p < POSSIBLE
+    assert verdict.TOLERABLE < base.p < POSSIBLE
     found = verdict_of(base, explained(780.0, "stribeck"))
     assert found.verdict == "consistent-with"
     assert on_held_out_tests(found, base, *unsure).verdict == "nothing-missing"
@@ -259,7 +256,7 @@ def test_a_cause_removes_more_than_model_errors_and_chance_may_leave():
     assert verdict_of(base, best, thresholds=Thresholds(least_gain=1000.0)).verdict != "named"
     # The base model will not do, and what will gains less than a clean draw may.
     base = explained(860.0)
-    assert base.fit.p < verdict.TOLERABLE
+    assert base.p < verdict.TOLERABLE
     assert verdict_of(base, best, thresholds=Thresholds(least_gain=200.0)).verdict == "data-insufficient"
 
 
@@ -346,7 +343,6 @@ def refit(monkeypatch):
         monkeypatch.setattr(diagnosis, "tight_refit", tight)
         monkeypatch.setattr(diagnosis, "minimise", lambda model, start: further)
         monkeypatch.setattr(diagnosis, "profile_likelihood", lambda fit, each: fit)
-        monkeypatch.setattr(diagnosis, "Explanation", priced)
         search = SimpleNamespace(each=map)
         return diagnosis.refit_cause(search, base, finding, found, verdict.DEFAULT)
 
@@ -355,20 +351,20 @@ def refit(monkeypatch):
 
 def test_what_was_best_only_for_its_error_gives_way(refit):
     base, first, second = explained(5000.0), explained(705.0, "stribeck"), explained(709.0, "preload")
-    worse = explained(900.0, "stribeck").fit
+    worse = explained(900.0, "stribeck")
     tied = verdict_of(base, first, second)
     assert tied.verdict == "tied"
-    found, order = refit(base, tied, [first, second], lambda fit: worse if fit is first.fit else fit)
+    found, order = refit(base, tied, [first, second], lambda fit: worse if fit is first else fit)
     assert (found.verdict, found.best.effects) == ("named", ("preload",))
-    assert [each.fit.chi2 for each in order] == [709.0, 900.0]
+    assert [each.chi2 for each in order] == [709.0, 900.0]
 
 
 def test_a_rival_whose_fit_had_not_ended_is_followed_before_the_gap_to_it_counts(refit):
-    base, first, second = explained(5000.0), explained(705.0, "stribeck"), explained(730.0, "preload")
-    second.fit.converged = False
+    base, first = explained(5000.0), explained(705.0, "stribeck")
+    second = explained(730.0, "preload", converged=False)
     early = verdict_of(base, first, second)
     assert early.verdict != "tied"
-    found, _ = refit(base, early, [first, second], further=explained(706.0, "preload").fit)
+    found, _ = refit(base, early, [first, second], further=explained(706.0, "preload"))
     assert found.verdict == "tied"
 
 

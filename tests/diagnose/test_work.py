@@ -69,8 +69,8 @@ def test_a_budget_ends_the_search_for_pairs_at_the_same_place_with_any_number_of
         search, base, singles, scans = single_fits(base_fit(Search.of(drawn(PAIR), CANDIDATES, threads)))
         search = replace(search, budget=Budget(total))
         begun = work.done()
-        found = pairs.fit_pairs(search, base.fit, singles, scans)
-        effects = [(each.effects, each.fit.chi2) for each in found]
+        found = pairs.fit_pairs(search, base, singles, scans)
+        effects = [(each.effects, each.chi2) for each in found]
         return effects, search.budget.untried, work.done() - begun, search.budget.changes
 
     complete = searched(1, float("inf"))

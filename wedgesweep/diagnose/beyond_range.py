@@ -7,7 +7,7 @@ what it leaves would be taken for a cause that no effect describes.
 
 from dataclasses import replace
 
-from wedgesweep.diagnose.explanation import NOTABLE, Explanation, penalised
+from wedgesweep.diagnose.explanation import NOTABLE, penalised
 from wedgesweep.diagnose.least_squares import minimise
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.search import LEADING, Explained
@@ -27,14 +27,14 @@ def followed_beyond(known: Explained) -> Explained:
     leading = [
         each
         for each in sorted(found, key=penalised)[:LEADING]
-        if each.fit.chi2 < NOTABLE * base.fit.chi2 and effects_at_range_end(each.fit)
+        if each.chi2 < NOTABLE * base.chi2 and effects_at_range_end(each)
     ]
     better = [
-        Explanation(fit)
-        for each, fit in zip(leading, search.each(lambda each: _followed(each.fit), leading), strict=True)
-        if fit.chi2 < each.fit.chi2 - SLIGHT
+        further
+        for each, further in zip(leading, search.each(_followed, leading), strict=True)
+        if further.chi2 < each.chi2 - SLIGHT
     ]
-    wider = {name for each in better for name in each.fit.model.hypothesis.wider}
+    wider = {name for each in better for name in each.model.hypothesis.wider}
     search = replace(search, wider=tuple(sorted({*search.wider, *wider})))
     return known._replace(search=search).joined(better)
 

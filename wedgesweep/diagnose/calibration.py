@@ -9,7 +9,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from wedgesweep.diagnose import verdict
-from wedgesweep.diagnose.explanation import Explanation
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.search import Search
 from wedgesweep.diagnose.stages import explain
@@ -49,11 +48,11 @@ class Calibration:
         return {"draws": SAMPLES, "least_gain": self.least_gain, "found_again": self.found}
 
 
-def calibrate(search: Search, base: Explanation, best: Explanation | None) -> Calibration:
+def calibrate(search: Search, base: Fit, best: Fit | None) -> Calibration:
     """Repeat a search on samples from the base model, and from the best explanation if there is one."""
     rng, candidates = np.random.default_rng(0), (*search.effects, *search.undetected)
 
-    def outcomes(truth: Fit, label: str) -> list[tuple[Explanation, list[Explanation]]]:
+    def outcomes(truth: Fit, label: str) -> list[tuple[Fit, list[Fit]]]:
         results = []
         for number in range(SAMPLES):
             sample = truth.model.data.bootstrap_sample(truth.evaluation, rng)
@@ -62,11 +61,11 @@ def calibrate(search: Search, base: Explanation, best: Explanation | None) -> Ca
             search.progress(f"calibration, {label}: {number + 1} of {SAMPLES}")
         return results
 
-    clean = outcomes(base.fit, "nothing missing")
+    clean = outcomes(base, "nothing missing")
     gains = np.array([start.penalised - order[0].penalised if order else -np.inf for start, order in clean])
     found = None
     if best is not None:
-        again = outcomes(best.fit, "+".join(best.effects))
+        again = outcomes(best, "+".join(best.effects))
         hits = [bool(order) and set(order[0].effects) == set(best.effects) for _, order in again]
         found = float(np.mean(hits))
     return Calibration(gains, found)

@@ -12,7 +12,7 @@ from wedgesweep.diagnose.calibration import calibrate
 from wedgesweep.diagnose.concatenation import joined
 from wedgesweep.diagnose.cross_validation import Gain, Predictor, cross_validate
 from wedgesweep.diagnose.empirical.stage import EmpiricalForce, empirical_force
-from wedgesweep.diagnose.explanation import Explanation, best_of_each, penalised
+from wedgesweep.diagnose.explanation import best_of_each, penalised
 from wedgesweep.diagnose.fit_data import FitData
 from wedgesweep.diagnose.ladder import (
     FORWARD,
@@ -75,10 +75,10 @@ class Diagnosis:
 
     measurement: Measurement
     data: FitData
-    base: Explanation
+    base: Fit
     decided: Finding
     thresholds: Thresholds
-    explanations: tuple[Explanation, ...] = ()
+    explanations: tuple[Fit, ...] = ()
     scores: tuple[Score, ...] = ()
     gain: Gain | None = None
     next_test: NextTest | None = None
@@ -110,8 +110,7 @@ class Diagnosis:
     @property
     def extended(self) -> Fit:
         """The best explanation's fit, or the base model's if the verdict is that nothing is missing."""
-        best = self.finding.best
-        return self.base.fit if best is None else best.fit
+        return self.finding.best or self.base
 
 
 # Called with everything that is known whenever a step has ended.
@@ -167,7 +166,7 @@ class Course:
 
     def _take_finished(self) -> None:
         """Take over what a stage of the search has fitted before it was cut off."""
-        finished = [each for each in self.search.finished if each.fit.model.data is self.search.data]
+        finished = [each for each in self.search.finished if each.model.data is self.search.data]
         if finished:
             with suppress(Exception):  # what made the stage fail may fail here as well
                 self.found = self.explained_by(self.explained.joined(finished))
@@ -276,7 +275,7 @@ def _held_out(course: Course) -> Diagnosis:
     base, decided = found.base, found.decided
     if decided.best is None or found.data.tests < 2:
         return found
-    gain = cross_validate(base.fit, decided.best.fit, course.predict)
+    gain = cross_validate(base, decided.best, course.predict)
     decided = verdict.on_held_out_tests(decided, base, gain.excess_removed, gain.interval)
     return replace(found, decided=decided, gain=None if decided.best is None else gain)
 
@@ -296,14 +295,14 @@ def _with_leading_explanation(search: Search, found: Diagnosis, predict: Predict
     It is fitted with the weights of its accuracy: those of noise alone would make the intervals too narrow.
     """
     rated = next(level.best for level in found.ladder if level.best.explanation is found.decided.best)
-    strict = rated.explanation.fit.model.data
+    strict = rated.explanation.model.data
     data = strict.with_model_error(rated.accuracy)
     fit = minimise(rated.fit.model.on(data), data.compared_again(rated.fit.evaluation))
     fit = profile_likelihood(tight_refit(fit), search.each)
     again = strict.compared_again(fit.evaluation)
-    best = Explanation(replace(fit, model=fit.model.on(strict), evaluation=again))
+    best = replace(fit, model=fit.model.on(strict), evaluation=again)
     others = [each for each in found.explanations if each.effects != best.effects]
-    gain = cross_validate(found.base.fit, best.fit, predict)
+    gain = cross_validate(found.base, best, predict)
     decided = replace(found.decided, best=best)
     known = tuple(best_of_each([best, *others], penalised))
     return replace(found, decided=decided, explanations=known, gain=gain)
@@ -328,12 +327,12 @@ def _with_empirical_force(course: Course) -> Diagnosis:
     found = course.found
     if found.finding.verdict not in ABSTAINING and not course.empirical_force:
         return found
-    force = empirical_force(found.base.fit, found.ladder, course.search.each)
+    force = empirical_force(found.base, found.ladder, course.search.each)
     return replace(found, empirical=force)
 
 
 def _scored(course: Course) -> Diagnosis:
-    scores = score_test.scores(course.search, course.found.base.fit, course.explained.scans)
+    scores = score_test.scores(course.search, course.found.base, course.explained.scans)
     return replace(course.found, scores=tuple(scores))
 
 
@@ -399,8 +398,8 @@ def _of_one_condition(models: Sequence[Config]) -> dict[str, str]:
 
 
 def refit_cause(
-    search: Search, base: Explanation, finding: Finding, found: list[Explanation], thresholds: Thresholds
-) -> tuple[Finding, list[Explanation]]:
+    search: Search, base: Fit, finding: Finding, found: list[Fit], thresholds: Thresholds
+) -> tuple[Finding, list[Fit]]:
     """The finding with its best explanation fitted tightly, and all explanations, best first.
 
     Rivals whose fits had not converged are followed further first, as the gap to them decides. If another
@@ -409,38 +408,38 @@ def refit_cause(
     if finding.best is not None:
         found = best_of_each([*_continued(search, found), *found], penalised)
         finding = verdict.decide(base, found, thresholds)
-    done: list[Explanation] = []
+    done: list[Fit] = []
     while finding.best is not None and not any(finding.best is each for each in done):
-        fit = tight_refit(finding.best.fit)
+        fit = tight_refit(finding.best)
         # Without a cause there is no interval to report.
         if finding.cause is not None or search.budget.left > 0.0:
             fit = profile_likelihood(fit, search.each)
-        done.append(Explanation(fit))
+        done.append(fit)
         found = [done[-1] if each is finding.best else each for each in found]
         found.sort(key=penalised)
         finding = verdict.decide(base, found, thresholds)
     return finding, found
 
 
-def _continued(search: Search, found: Sequence[Explanation]) -> list[Explanation]:
+def _continued(search: Search, found: Sequence[Fit]) -> list[Fit]:
     """The leading explanations, followed further where their fits had not converged."""
-    waiting = [each for each in sorted(found, key=penalised)[:LEADING] if not each.fit.converged]
-    return search.each(lambda each: Explanation(minimise(each.fit.model, each.fit.evaluation)), waiting)
+    waiting = [each for each in sorted(found, key=penalised)[:LEADING] if not each.converged]
+    return search.each(lambda fit: minimise(fit.model, fit.evaluation), waiting)
 
 
-def _undecided(finding: Finding, explanations: Sequence[Explanation]) -> list[Fit]:
+def _undecided(finding: Finding, explanations: Sequence[Fit]) -> list[Fit]:
     """Fits that a next test should separate, at most REFINED of them without a cause.
 
     These are a cause and its rivals. Without a cause they are the adequate explanations or, if fewer than two
     are adequate, the best ones.
     """
     if finding.cause is not None:
-        return [finding.cause.fit, *(each.fit for each in finding.rivals)]
+        return [finding.cause, *finding.rivals]
     if finding.verdict != verdict.INSUFFICIENT:
         return []
     adequate = finding.alternatives
     closest = adequate if len(adequate) > 1 else verdict.ranked(explanations)
-    return [each.fit for each in closest[:REFINED]]
+    return list(closest[:REFINED])
 
 
 # Steps of a diagnosis after the fit of the base model, in their order; any of them may fail or be cut off.

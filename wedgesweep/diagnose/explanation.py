@@ -1,15 +1,14 @@
-"""Explanations: fits of hypotheses with what their parameters cost."""
+"""What makes a fit an explanation: what its parameters cost, and least p-values."""
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
-from functools import cached_property
 from math import log
 from operator import attrgetter
-from typing import TypeVar
+from typing import TYPE_CHECKING
 
 from wedgesweep.diagnose.fit_data import FitData
-from wedgesweep.diagnose.model import Fit
-from wedgesweep.diagnose.parameter_constancy import Constancy, parameter_constancy
+
+if TYPE_CHECKING:
+    from wedgesweep.diagnose.model import Fit
 
 # Each parameter costs ln n + PENALTY in chi-squared, n being the number of observations. PENALTY is such that
 # clean data keep the base model though the best of some twenty candidates is compared with it.
@@ -27,43 +26,13 @@ def parameter_penalty(data: FitData) -> float:
     return log(data.observations.sum()) + PENALTY
 
 
-@dataclass(frozen=True)
-class Explanation:
-    """A fit of a hypothesis, with what its parameters cost."""
-
-    fit: Fit
-
-    @property
-    def effects(self) -> tuple[str, ...]:
-        return self.fit.effects
-
-    @cached_property
-    def constancy(self) -> Constancy:
-        """Whether its parameters are the same in all tests."""
-        return parameter_constancy(self.fit)
-
-    @property
-    def p_value(self) -> float:
-        """The smaller of two p-values: that of the misfit, and that of the test for constant parameters.
-
-        The latter takes simulations, and is left out where the misfit alone rules the explanation out.
-        """
-        return min(self.fit.p, self.constancy.p) if self.fit.p >= POSSIBLE else self.fit.p
-
-    @property
-    def penalised(self) -> float:
-        """Chi-squared plus the penalty for all parameters."""
-        return self.fit.chi2 + parameter_penalty(self.fit.model.data) * self.fit.model.size
-
-
 # Key by which explanations are ranked.
-penalised: Callable[[Explanation], float] = attrgetter("penalised")
-Each = TypeVar("Each", Fit, Explanation)
+penalised: Callable[["Fit"], float] = attrgetter("penalised")
 
 
-def best_of_each(found: Iterable[Each], misfit: Callable[[Each], float]) -> list[Each]:
-    """The best fit or explanation of each set of effects, the best first."""
-    best: dict[frozenset[str], Each] = {}
+def best_of_each(found: Iterable["Fit"], misfit: Callable[["Fit"], float]) -> "list[Fit]":
+    """The best fit of each set of effects, the best first."""
+    best: dict[frozenset[str], Fit] = {}
     for each in sorted(found, key=misfit):
         best.setdefault(frozenset(each.effects), each)
     return list(best.values())

@@ -1,12 +1,14 @@
 """Derivatives of the residual by everything that is fitted, by finite differences."""
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from wedgesweep.diagnose.evaluation import Evaluation
-from wedgesweep.diagnose.model import Model
+
+if TYPE_CHECKING:
+    from wedgesweep.diagnose.model import Model
 
 # Step as a share of a parameter's scale. Over shorter steps the error of the simulation would look like
 # information, and intervals become too narrow where amplitude and effect are hard to distinguish.
@@ -34,7 +36,7 @@ class Derivatives(NamedTuple):
     found: np.ndarray
 
 
-def step_sizes(model: Model, near: Jacobian | None = None) -> np.ndarray:
+def step_sizes(model: "Model", near: Jacobian | None = None) -> np.ndarray:
     """Steps of differences for all parameters and fitted nuisance parameters, shape (k + u + L,).
 
     ``near``: derivatives at a point nearby; steps are shortened where these predict too large a change.
@@ -52,7 +54,7 @@ def step_sizes(model: Model, near: Jacobian | None = None) -> np.ndarray:
 
 
 def jacobian(
-    model: Model, evaluation: Evaluation, side: float = 1.0, near: Jacobian | None = None
+    model: "Model", evaluation: Evaluation, side: float = 1.0, near: Jacobian | None = None
 ) -> Jacobian:
     """Derivatives at an evaluation by one-sided differences; 0 by parameters that are held or exact.
 
@@ -91,14 +93,14 @@ def jacobian(
     return Jacobian(columns[..., :size], np.concatenate([eliminated, columns[..., size:]], axis=-1))
 
 
-def accurate_jacobian(model: Model, evaluation: Evaluation, side: float = 1.0) -> Jacobian:
+def accurate_jacobian(model: "Model", evaluation: Evaluation, side: float = 1.0) -> Jacobian:
     """Derivatives at an evaluation, taken again by shorter steps if a response has changed too much."""
     first = jacobian(model, evaluation, side)
     short_enough = np.array_equal(step_sizes(model, first), step_sizes(model))
     return first if short_enough else jacobian(model, evaluation, side, first)
 
 
-def conservative_jacobian(model: Model, evaluation: Evaluation) -> Jacobian:
+def conservative_jacobian(model: "Model", evaluation: Evaluation) -> Jacobian:
     """The smaller of forward and backward difference, for each test and parameter.
 
     A difference across a jump of the response is large, and would make a parameter look far too certain.

@@ -19,7 +19,7 @@ import numpy as np
 
 from wedgesweep.diagnose import accuracy, verdict
 from wedgesweep.diagnose.cross_validation import Predictor, held_out_accuracy
-from wedgesweep.diagnose.explanation import ADEQUATE, NOTABLE, Explanation
+from wedgesweep.diagnose.explanation import ADEQUATE, NOTABLE
 from wedgesweep.diagnose.least_squares import BRIEF, minimise, subset_fit
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.search import Search
@@ -51,7 +51,7 @@ class Rated:
     left out of the fit; None if that was not evaluated.
     """
 
-    explanation: Explanation
+    explanation: Fit
     accuracy: float
     fit: Fit
     held_out: float | None = None
@@ -86,7 +86,7 @@ class Level:
         return rival / best
 
 
-def rough_ladder(search: Search, base: Explanation, explanations: Sequence[Explanation]) -> tuple[Level, ...]:
+def rough_ladder(search: Search, base: Fit, explanations: Sequence[Fit]) -> tuple[Level, ...]:
     """Rate the base model and every eligible explanation where its fit ended, without simulations."""
     allowed = [base, *filter(verdict.eligible, explanations)]
     rated = sorted(_surpassing_limits(search.each(rated_where_it_ended, allowed)), key=by_accuracy)
@@ -106,9 +106,7 @@ def _surpassing_limits(rated: Sequence[Rated]) -> list[Rated]:
     return [each for each in rated if not hardly(each)]
 
 
-def ladder(
-    search: Search, base: Explanation, explanations: Sequence[Explanation], predict: Predictor
-) -> tuple[Level, ...]:
+def ladder(search: Search, base: Fit, explanations: Sequence[Fit], predict: Predictor) -> tuple[Level, ...]:
     """Rate the base model and every eligible explanation, and refine the leading ones.
 
     The best one of each level also predicts tests that are left out of its fit.
@@ -117,10 +115,9 @@ def ladder(
     return tuple(level_of(search, level.rated, predict) for level in rough)
 
 
-def rated_where_it_ended(each: Explanation) -> Rated:
+def rated_where_it_ended(fit: Fit) -> Rated:
     """An explanation with the accuracy of its fit as it is."""
-    fit = each.fit
-    return Rated(each, accuracy.of_responses([(fit.model.data, fit.evaluation)], fit.dof), fit)
+    return Rated(fit, accuracy.of_responses([(fit.model.data, fit.evaluation)], fit.dof), fit)
 
 
 def level_of(search: Search, rough: Sequence[Rated], predict: Predictor) -> Level:
@@ -202,7 +199,7 @@ def _of_records(rated: Rated, records: Sequence[tuple[str, np.ndarray]]) -> ByRe
 
 
 def forward_selection(
-    search: Search, explanations: Sequence[Explanation], levels: Sequence[Level], predict: Predictor
+    search: Search, explanations: Sequence[Fit], levels: Sequence[Level], predict: Predictor
 ) -> tuple[Level, ...]:
     """The levels of the ladder, and one more for each effect that is added to its best pair.
 
@@ -211,7 +208,7 @@ def forward_selection(
     found = list(levels)
     if len(found[-1].best.effects) < 2 or not _gained(*found[-2:]):
         return tuple(found)
-    singles = {each.effects[0]: each.fit for each in explanations if len(each.effects) == 1}
+    singles = {each.effects[0]: each for each in explanations if len(each.effects) == 1}
     search.budget.grant(SHARE * search.budget.total)
     while len(found[-1].best.effects) < MOST:
         rated = _with_one_more(search, found[-1].best, singles)
@@ -237,7 +234,7 @@ def _with_one_more(search: Search, best: Rated, singles: Mapping[str, Fit]) -> l
     ]
     begun = search.each_affordable(lambda single: _begun(search, best, single), others, FORWARD)
     leading = sorted(begun, key=lambda fit: fit.chi2)[:FOLLOWED]
-    found = search.each(lambda fit: rated_where_it_ended(Explanation(fit)), leading)
+    found = search.each(rated_where_it_ended, leading)
     return sorted(found, key=by_accuracy)
 
 

@@ -8,8 +8,10 @@ import numpy as np
 from scipy.special import chdtrc
 
 from wedgesweep.diagnose.evaluation import Comparison, Evaluation, Point, Scenario, best_evaluation_per_test
+from wedgesweep.diagnose.explanation import POSSIBLE, parameter_penalty
 from wedgesweep.diagnose.fit_data import FitData
 from wedgesweep.diagnose.fit_parameters import Hypothesis, Values
+from wedgesweep.diagnose.parameter_constancy import Constancy, parameter_constancy
 from wedgesweep.diagnose.work import Best
 from wedgesweep.uncertain import UncertainNumbers, uncertain_numbers
 
@@ -183,6 +185,24 @@ class Fit:
     def p(self) -> float:
         """Probability of a misfit this large if the model is right."""
         return float(chdtrc(self.dof, self.chi2))
+
+    @cached_property
+    def constancy(self) -> Constancy:
+        """Whether its parameters are the same in all tests."""
+        return parameter_constancy(self)
+
+    @property
+    def p_value(self) -> float:
+        """The smaller of two p-values: that of the misfit, and that of the test for constant parameters.
+
+        The latter takes simulations, and is left out where the misfit alone rules the explanation out.
+        """
+        return min(self.p, self.constancy.p) if self.p >= POSSIBLE else self.p
+
+    @property
+    def penalised(self) -> float:
+        """Chi-squared plus the penalty for all parameters."""
+        return self.chi2 + parameter_penalty(self.model.data) * self.model.size
 
     @property
     def implausible(self) -> tuple[str, ...]:

@@ -14,7 +14,7 @@ import numpy as np
 
 from wedgesweep.diagnose import verdict
 from wedgesweep.diagnose.evaluation import Evaluation
-from wedgesweep.diagnose.explanation import Explanation, best_of_each, penalised
+from wedgesweep.diagnose.explanation import best_of_each, penalised
 from wedgesweep.diagnose.least_squares import minimise, subset_fit
 from wedgesweep.diagnose.model import ROUGH, Fit, unfitted
 from wedgesweep.diagnose.search import LEADING, Round, Scans, Search
@@ -72,9 +72,9 @@ class Combination(NamedTuple):
         return beside or bool(self.second.changes.any())
 
 
-def fit_pairs(search: Search, base: Fit, singles: Sequence[Explanation], scans: Scans) -> list[Explanation]:
+def fit_pairs(search: Search, base: Fit, singles: Sequence[Fit], scans: Scans) -> list[Fit]:
     """Fit pairs of effects, and return them best first; ``singles``: best fit of each effect by itself."""
-    known = {each.effects[0]: single_scan(base, each.fit, scans[each.effects[0]]) for each in singles}
+    known = {each.effects[0]: single_scan(base, each, scans[each.effects[0]]) for each in singles}
     leading = sorted(known, key=lambda effect: known[effect].fit.chi2)[:LEADING]
     both = [Combination(known[one], known[other]) for one in leading for other in known if one != other]
     useful = [each for each in both if each.shows and go_together(each.effects)]
@@ -155,7 +155,7 @@ def starting_fit(search: Search, combination: Combination) -> Fit:
     return unfitted(model, start)
 
 
-def _complete(search: Search, base: Fit, singles: Mapping[str, SingleScan], subset: Fit) -> Explanation:
+def _complete(search: Search, base: Fit, singles: Mapping[str, SingleScan], subset: Fit) -> Fit:
     """A fit to all tests, from the end of a fit to a subset of them.
 
     Nuisance parameters of each test start as in the base fit or in the fit of one of the effects by itself,
@@ -165,20 +165,20 @@ def _complete(search: Search, base: Fit, singles: Mapping[str, SingleScan], subs
     known = [base, *(singles[effect].fit for effect in subset.effects)]
     starts = [replace(model.start(fit, subset.x[: model.size]), x=subset.x) for fit in known]
     start = replace(starts[0], nuisance=model.best_nuisances(starts))
-    found = Explanation(minimise(model, model.evaluate(start)))
+    found = minimise(model, model.evaluate(start))
     search.finished.append(found)
     return found
 
 
-def components(search: Search, pair: Fit) -> list[Explanation]:
+def components(search: Search, pair: Fit) -> list[Fit]:
     """Either effect of a pair by itself, from its parameters in the pair.
 
     A pair whose other effect does nothing reveals a minimum that the single fit had missed.
     """
 
-    def alone(effect: str) -> Explanation:
+    def alone(effect: str) -> Fit:
         model = search.model(effect)
         start = model.start(pair, model.hypothesis.at(pair.values))
-        return Explanation(minimise(model, model.evaluate(start)))
+        return minimise(model, model.evaluate(start))
 
     return search.each(alone, pair.effects)

@@ -6,13 +6,15 @@ chi-squared as a whole shows it. This is the Lagrange multiplier test (Breusch a
 parameters (Nyblom, 1989).
 """
 
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from scipy.special import chdtrc
 
 from wedgesweep.diagnose.jacobian import accurate_jacobian
-from wedgesweep.diagnose.model import Fit
+
+if TYPE_CHECKING:
+    from wedgesweep.diagnose.model import Fit
 
 # Singular value of the scaled derivatives below which a direction depends on the others.
 DEPENDENT = 1e-9
@@ -25,7 +27,7 @@ class Projector:
     the fit, projected, as one vector.
     """
 
-    def __init__(self, fit: Fit) -> None:
+    def __init__(self, fit: "Fit") -> None:
         self._model = model = fit.model
         self.by_parameter, by_nuisance = accurate_jacobian(model, fit.evaluation)
         tests, observations, parameters = self.by_parameter.shape
@@ -75,7 +77,7 @@ class Constancy(NamedTuple):
     parameter: str | None
 
 
-def parameter_constancy(fit: Fit) -> Constancy:
+def parameter_constancy(fit: "Fit") -> Constancy:
     """Test the parameters of a fit's hypothesis one by one, with a Bonferroni correction."""
     size = fit.model.size
     if not (size and fit.evaluation.found):

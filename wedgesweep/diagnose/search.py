@@ -17,7 +17,7 @@ import numpy as np
 from wedgesweep.ablation import left_out
 from wedgesweep.diagnose import work
 from wedgesweep.diagnose.evaluation import Evaluation
-from wedgesweep.diagnose.explanation import POSSIBLE, Explanation, best_of_each, penalised
+from wedgesweep.diagnose.explanation import POSSIBLE, best_of_each, penalised
 from wedgesweep.diagnose.fit_data import FitData
 from wedgesweep.diagnose.fit_parameters import Hypothesis
 from wedgesweep.diagnose.least_squares import BRIEF, minimise
@@ -79,7 +79,7 @@ class Search:
     progress: Callable[[str], None] = quiet
     budget: work.Budget = field(default_factory=work.Budget, compare=False)
     wider: tuple[str, ...] = ()
-    finished: list[Explanation] = field(default_factory=list, compare=False)
+    finished: list[Fit] = field(default_factory=list, compare=False)
     failed: dict[str, Exception] = field(default_factory=dict, compare=False)
     without: frozenset[str] = field(default_factory=left_out.get)
 
@@ -175,8 +175,8 @@ class Explained(NamedTuple):
     """What a search knows: the base model, explanations, best first, and the scans of single effects."""
 
     search: Search
-    base: Explanation
-    explanations: list[Explanation]
+    base: Fit
+    explanations: list[Fit]
     scans: Scans
 
     @property
@@ -185,7 +185,7 @@ class Explained(NamedTuple):
         best = min([self.base, *self.explanations], key=penalised)
         return Best(best.effects, best.penalised)
 
-    def joined(self, more: Iterable[Explanation]) -> "Explained":
+    def joined(self, more: Iterable[Fit]) -> "Explained":
         """The same with more explanations; of each set of effects the best one stays."""
         return self._replace(explanations=best_of_each([*more, *self.explanations], penalised))
 
@@ -193,7 +193,7 @@ class Explained(NamedTuple):
 class SingleFit(NamedTuple):
     """Best fit of one effect, the scan over its range, and the data, aligned where the effect asks for it."""
 
-    explanation: Explanation
+    fit: Fit
     scan: list[Evaluation]
     data: FitData
 
@@ -214,7 +214,7 @@ def base_fit(search: Search) -> Explained:
             "nuisances held", fit, lambda fit: min(fit, _from_held(search, model, evaluations), key=_chi2)
         )
     fit = _aligned(fit)
-    return Explained(replace(search, data=fit.model.data), Explanation(fit), [], {})
+    return Explained(replace(search, data=fit.model.data), fit, [], {})
 
 
 def _from_held(search: Search, model: Model, evaluations: Sequence[Evaluation]) -> Fit:
@@ -232,15 +232,15 @@ def refit_base(known: Explained) -> Explained:
     Otherwise an extension would gain what the base model lost by stopping short of its minimum.
     """
     search, base, found, _ = known
-    best = min(found, key=penalised, default=base).fit
+    best = min(found, key=penalised, default=base)
     model, values = search.model(), best.model.values(best.x)
     x = np.clip(model.uncertain.at(values), model.low, model.high)
     _, at_rest = search.data.start()
     fit = minimise(model, model.evaluate(replace(best.point, x=x, warm=at_rest)))
-    if fit.chi2 >= base.fit.chi2 - SLIGHT:
+    if fit.chi2 >= base.chi2 - SLIGHT:
         return known
     fit = _aligned(fit)
-    return known._replace(search=replace(search, data=fit.model.data), base=Explanation(fit))
+    return known._replace(search=replace(search, data=fit.model.data), base=fit)
 
 
 def _aligned(fit: Fit) -> Fit:
@@ -258,11 +258,11 @@ def single_fits(known: Explained) -> Explained:
 
     def fitted(effect: str) -> SingleFit | None:
         try:
-            one = single_fit(search, effect, base.fit)
+            one = single_fit(search, effect, base)
         except Exception as error:  # one odd effect must not take the others with it
             search.failed[effect] = error
             return None
-        search.finished.append(one.explanation)
+        search.finished.append(one.fit)
         return one
 
     both = zip(search.effects, search.each(fitted, search.effects, "single effects"), strict=True)
@@ -271,7 +271,7 @@ def single_fits(known: Explained) -> Explained:
     return Explained(
         replace(search, effects=tuple(found), data=aligned[-1] if aligned else search.data),
         base,
-        [one.explanation for one in found.values()],
+        [one.fit for one in found.values()],
         {effect: one.scan for effect, one in found.items()},
     )
 
@@ -300,7 +300,7 @@ def single_fit(search: Search, effect: str, base: Fit) -> SingleFit:
     fit = best_of(model, evaluations, schedule)
     if _brings_alignment(data, effect):
         fit = _aligned(fit)
-    return SingleFit(Explanation(fit), scan, fit.model.data)
+    return SingleFit(fit, scan, fit.model.data)
 
 
 def _with_own_numbers(model: Model, start: Evaluation) -> Evaluation:

@@ -9,9 +9,10 @@ from typing import NamedTuple
 
 from wedgesweep.diagnose import verdict
 from wedgesweep.diagnose.beyond_range import followed_beyond
-from wedgesweep.diagnose.explanation import NOTABLE, Explanation, penalised
+from wedgesweep.diagnose.explanation import NOTABLE, penalised
 from wedgesweep.diagnose.fit_data import FitData
 from wedgesweep.diagnose.least_squares import BRIEF, minimise
+from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.pairs import components, fit_pairs
 from wedgesweep.diagnose.search import (
     LEADING,
@@ -48,7 +49,7 @@ def taken(stages: Sequence[Stage], known: Explained) -> Explained:
 def _base_model_again(known: Explained) -> Explained:
     """The base model from where an extension ended, and single effects beside it if it fits far better."""
     better = refit_base(known)
-    if better.base.fit.chi2 >= NOTABLE * known.base.fit.chi2:
+    if better.base.chi2 >= NOTABLE * known.base.chi2:
         return better
     return single_fits(better).joined(known.explanations)
 
@@ -56,11 +57,11 @@ def _base_model_again(known: Explained) -> Explained:
 def _pairs(known: Explained) -> Explained:
     search, base, found, scans = known
     search.budget.grant(PAIRS_SHARE * search.budget.total)
-    return known.joined(fit_pairs(search, base.fit, found, scans))
+    return known.joined(fit_pairs(search, base, found, scans))
 
 
 def _components(known: Explained) -> Explained:
-    return known.joined(components(known.search, known.explanations[0].fit))
+    return known.joined(components(known.search, known.explanations[0]))
 
 
 def _with_renewed_covariance(explained: Explained) -> Explained:
@@ -71,7 +72,7 @@ def _with_renewed_covariance(explained: Explained) -> Explained:
     covariance, as only then are their misfits on one scale.
     """
     search, base, found, scans = explained
-    best = min([base, *found], key=penalised).fit
+    best = min([base, *found], key=penalised)
     data = search.data.renewed(best.model.scenario(best.point))
     if data is search.data:
         return explained
@@ -83,13 +84,12 @@ def _with_renewed_covariance(explained: Explained) -> Explained:
     return Explained(search, base, found, scans)
 
 
-def _compared_again(data: FitData, each: Explanation) -> Explanation:
-    model, evaluation = each.fit.model.on(data), data.compared_again(each.fit.evaluation)
-    return Explanation(replace(each.fit, model=model, evaluation=evaluation))
+def _compared_again(data: FitData, fit: Fit) -> Fit:
+    return replace(fit, model=fit.model.on(data), evaluation=data.compared_again(fit.evaluation))
 
 
-def _refitted(each: Explanation) -> Explanation:
-    return Explanation(minimise(each.fit.model, each.fit.evaluation, BRIEF))
+def _refitted(fit: Fit) -> Fit:
+    return minimise(fit.model, fit.evaluation, BRIEF)
 
 
 def _inadequate(known: Explained) -> bool:

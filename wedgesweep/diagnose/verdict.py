@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy.special import chdtrc
 
-from wedgesweep.diagnose.explanation import ADEQUATE, POSSIBLE, TOLERABLE, Explanation, penalised
+from wedgesweep.diagnose.explanation import ADEQUATE, POSSIBLE, TOLERABLE, penalised
 from wedgesweep.diagnose.fit_data import FitData
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnosis_result import VERDICTS, Reason
@@ -78,18 +78,18 @@ class Finding:
 
     verdict: str
     reason: Reason
-    best: Explanation | None = None
-    rivals: tuple[Explanation, ...] = ()
+    best: Fit | None = None
+    rivals: tuple[Fit, ...] = ()
     numbers: Mapping[str, Any] = field(default_factory=dict)
     larger: tuple[Fit, ...] = ()
 
     @property
-    def cause(self) -> Explanation | None:
+    def cause(self) -> Fit | None:
         """What is reported as the cause; None where the verdict abstains."""
         return self.best if self.verdict in (NAMED, CONSISTENT, TIED) else None
 
     @property
-    def alternatives(self) -> tuple[Explanation, ...]:
+    def alternatives(self) -> tuple[Fit, ...]:
         """What the tests cannot tell from the cause or, without a cause, from one another."""
         best = self.best
         if self.verdict == INSUFFICIENT and best is not None and best.p_value >= POSSIBLE:
@@ -97,21 +97,21 @@ class Finding:
         return self.rivals
 
 
-def eligible(each: Explanation) -> bool:
+def eligible(each: Fit) -> bool:
     """Whether a fit may be called a cause.
 
     An effect that is an uncertain parameter of the base model counts as one only if it is off by more than
     UNCERTAIN standard deviations, and a play only if it is larger than the smallest one that is searched.
     """
-    if each.fit.model.hypothesis.vanishes(each.fit.x):
+    if each.model.hypothesis.vanishes(each.x):
         return False
     off = deviations(each)
     return all(off[name] > UNCERTAIN for name in off)
 
 
-def deviations(each: Explanation) -> dict[str, float]:
+def deviations(fit: Fit) -> dict[str, float]:
     """Standard deviations by which effects that are uncertain parameters of the base model are off."""
-    fit, data = each.fit, each.fit.model.data
+    data = fit.model.data
     declared = {name: std for name, std in data.uncertain.items() if name in fit.effects}
     stated = uncertain_numbers(declared, data.model.effects)
     moved = np.abs(stated.at(fit.model.values(fit.x)) - stated.mean) / stated.std
@@ -126,13 +126,13 @@ def tolerable(base: Fit) -> bool:
     return base.p >= TOLERABLE and not base.implausible
 
 
-def none_adequate(found: Sequence[Explanation]) -> bool:
+def none_adequate(found: Sequence[Fit]) -> bool:
     """Whether there are explanations, and not even the best of them is adequate."""
     best = min(found, key=penalised, default=None)
     return best is not None and best.p_value < ADEQUATE
 
 
-def ranked(explanations: Sequence[Explanation]) -> list[Explanation]:
+def ranked(explanations: Sequence[Fit]) -> list[Fit]:
     """Eligible explanations, best first, without those that beat a part of them by less than GAP."""
     allowed = sorted(filter(eligible, explanations), key=penalised)
     return [
@@ -142,19 +142,19 @@ def ranked(explanations: Sequence[Explanation]) -> list[Explanation]:
     ]
 
 
-def _is_part(one: Explanation, other: Explanation) -> bool:
+def _is_part(one: Fit, other: Fit) -> bool:
     """Whether one explanation is the other without some effects, or with a special case of one of them."""
     return set(one.effects) < set(other.effects) or parts(one.effects) < parts(other.effects)
 
 
-def decide(base: Explanation, explanations: Sequence[Explanation], thresholds: Thresholds) -> Finding:
+def decide(base: Fit, explanations: Sequence[Fit], thresholds: Thresholds) -> Finding:
     """Decide between the base model and everything that was fitted.
 
     Parameters
     ----------
-    base : Explanation
+    base : Fit
         The fitted base model.
-    explanations : sequence of Explanation
+    explanations : sequence of Fit
         Fits of single effects and of pairs, in any order.
     thresholds : Thresholds
         The default ones, or those of a calibration.
@@ -169,40 +169,38 @@ def decide(base: Explanation, explanations: Sequence[Explanation], thresholds: T
     return _weigh(base, best, order, thresholds)
 
 
-def _possible(each: Explanation) -> bool:
+def _possible(each: Fit) -> bool:
     """Whether an explanation is possible; one that meets the model error that is allowed is."""
-    data = each.fit.model.data
-    return (each.fit.p if data.model_error else each.p_value) >= POSSIBLE
+    data = each.model.data
+    return (each.p if data.model_error else each.p_value) >= POSSIBLE
 
 
-def _nothing_better(base: Explanation, order: Sequence[Explanation]) -> Finding:
+def _nothing_better(base: Fit, order: Sequence[Fit]) -> Finding:
     """The finding where no explanation removes as much misfit as a cause must."""
-    if tolerable(base.fit):
+    if tolerable(base):
         return _nothing_missing(base)
-    if base.fit.p >= TOLERABLE:
+    if base.p >= TOLERABLE:
         return _with_numbers_as_stated(base, order)
     if order and order[0].p_value >= ADEQUATE:
         return Finding(INSUFFICIENT, Reason.NEARLY_TOLERABLE, order[0])
     return _unexplained(base, order[0] if order else None)
 
 
-def _nothing_missing(base: Explanation) -> Finding:
+def _nothing_missing(base: Fit) -> Finding:
     """The finding on a tolerable base model: nothing is missing, if there is a response to explain."""
-    data = base.fit.model.data
+    data = base.model.data
     share = float(data.power.sum() / data.observations.sum())
     if share < LEAST_POWER:
         return Finding(INSUFFICIENT, Reason.NO_SIGNAL, numbers={"power_over_noise": share})
     return Finding(NOTHING, Reason.ONLY_NOISE)
 
 
-def _weigh(
-    base: Explanation, best: Explanation, order: Sequence[Explanation], thresholds: Thresholds
-) -> Finding:
+def _weigh(base: Fit, best: Fit, order: Sequence[Fit], thresholds: Thresholds) -> Finding:
     """The finding on the best possible explanation, by its fit, its rivals and the evidence for it."""
     p, against, numbers = _against(base, best)
-    met = best.fit.model.data.model_error and best.fit.p >= ADEQUATE
+    met = best.model.data.model_error and best.p >= ADEQUATE
     # With a weak excess, noise decides in part which tests hold most of it: then p says less.
-    if p < POSSIBLE and base.fit.excess >= STRONG and not met:
+    if p < POSSIBLE and base.excess >= STRONG and not met:
         return Finding(_abstention(base), against, best, (), numbers)
     near = [each for each in order if each.penalised - best.penalised < GAP and each is not best]
     rivals = tuple(filter(_possible, near))
@@ -211,7 +209,7 @@ def _weigh(
         return Finding(INSUFFICIENT, Reason.OTHERS_ADEQUATE, best, alternatives)
     if len(rivals) >= MOST_TIED:
         return Finding(INSUFFICIENT, Reason.EQUALLY_GOOD, best, rivals)
-    if base.fit.model.data.tests < FEWEST_TESTS:
+    if base.model.data.tests < FEWEST_TESTS:
         return Finding(INSUFFICIENT, Reason.FEW_TESTS, best, rivals)
     if rivals:
         return Finding(TIED, Reason.EQUALLY_GOOD, best, rivals)
@@ -221,9 +219,9 @@ def _weigh(
         effects = list(component.effects)
         return Finding(INSUFFICIENT, Reason.COMPONENT_SUFFICES, best, alternatives, {"effects": effects})
     if nearly := _nearly_sufficient_component(order, best):
-        larger = {"model_error": LARGER * best.fit.model.data.model_error}
+        larger = {"model_error": LARGER * best.model.data.model_error}
         return Finding(CONSISTENT, Reason.PAIR_LEAVES_LESS, nearly, (best, *alternatives), larger)
-    if base.fit.excess < thresholds.strong:
+    if base.excess < thresholds.strong:
         return _weak(base, best)
     if p < ADEQUATE:
         return Finding(CONSISTENT, against, best, (), numbers)
@@ -232,45 +230,45 @@ def _weigh(
     return Finding(NAMED, Reason.ALONE, best)
 
 
-def _weak(base: Explanation, best: Explanation) -> Finding:
+def _weak(base: Fit, best: Fit) -> Finding:
     """The finding on a small excess, which a base model may have made small by a number far from stated."""
-    (effect, *others), fit = best.effects, best.fit
-    if effect in base.fit.implausible and not (others or fit.implausible):
+    effect, *others = best.effects
+    if effect in base.implausible and not (others or best.implausible):
         off = {"effect": effect, "standard_deviations": deviations(best)[effect]}
         return Finding(CONSISTENT, Reason.AT_LIMIT, best, (), off)
-    return Finding(CONSISTENT, Reason.WEAK_EXCESS, best, (), {"excess": base.fit.excess})
+    return Finding(CONSISTENT, Reason.WEAK_EXCESS, best, (), {"excess": base.excess})
 
 
-def _with_numbers_as_stated(base: Explanation, order: Sequence[Explanation]) -> Finding:
+def _with_numbers_as_stated(base: Fit, order: Sequence[Fit]) -> Finding:
     """The finding where the base model fits, but only with uncertain parameters far from stated.
 
     Explanations are adequate here that leave these parameters about as stated.
     """
-    found = [each for each in order if each.fit.p >= ADEQUATE and not each.fit.implausible][:MOST_TIED]
+    found = [each for each in order if each.p >= ADEQUATE and not each.implausible][:MOST_TIED]
     if not found:
         return _unexplained(base, order[0] if order else None)
     return Finding(INSUFFICIENT, Reason.NEARLY_TOLERABLE, found[0], tuple(found[1:]))
 
 
-def _sufficient_component(order: Sequence[Explanation], best: Explanation) -> Explanation | None:
+def _sufficient_component(order: Sequence[Fit], best: Fit) -> Fit | None:
     """A component of a pair that fits by itself, but with parameters that differ from test to test.
 
     The other component hardly shows then, and many others would do as well.
     """
     components = (each for each in order if set(each.effects) < set(best.effects))
-    return next((each for each in components if each.fit.p >= ADEQUATE > each.p_value), None)
+    return next((each for each in components if each.p >= ADEQUATE > each.p_value), None)
 
 
-def _nearly_sufficient_component(order: Sequence[Explanation], best: Explanation) -> Explanation | None:
+def _nearly_sufficient_component(order: Sequence[Fit], best: Fit) -> Fit | None:
     """The component of a pair that would do by itself if model errors were a little larger than allowed.
 
     How large they are is a guess, and the other component may be one of them.
     """
-    if best.fit.model.data.model_error == 0.0:
+    if best.model.data.model_error == 0.0:
         return None
     components = [each for each in order if set(each.effects) < set(best.effects)]
-    nearly = (each for each in components if _p_under_larger_errors(each.fit) >= ADEQUATE)
-    return next((each for each in nearly if not each.fit.implausible), None)
+    nearly = (each for each in components if _p_under_larger_errors(each) >= ADEQUATE)
+    return next((each for each in nearly if not each.implausible), None)
 
 
 def _p_under_larger_errors(fit: Fit) -> float:
@@ -278,26 +276,26 @@ def _p_under_larger_errors(fit: Fit) -> float:
     return float(chdtrc(fit.dof, data.compared_again(fit.evaluation).chi2))
 
 
-def _adequate_alternatives(order: Sequence[Explanation], best: Explanation) -> tuple[Explanation, ...]:
+def _adequate_alternatives(order: Sequence[Fit], best: Fit) -> tuple[Fit, ...]:
     """Other explanations with an adequate misfit.
 
     Parts of the best one, and those that it is a part of, do not count.
     """
     others = [each for each in order if not (each is best or _is_part(each, best) or _is_part(best, each))]
-    return tuple(each for each in others if each.fit.p >= ADEQUATE)
+    return tuple(each for each in others if each.p >= ADEQUATE)
 
 
-def _against(base: Explanation, best: Explanation) -> tuple[float, Reason, Mapping[str, Any]]:
+def _against(base: Fit, best: Fit) -> tuple[float, Reason, Mapping[str, Any]]:
     """The strongest evidence against an explanation: its p-value, the reason, and the numbers of that.
 
     The smallest p-value over all tests, over those that hold most of the excess, and of constancy.
     """
-    shows = p_where_it_shows(base.fit, best.fit)
+    shows = p_where_it_shows(base, best)
     found: list[tuple[float, Reason, Mapping[str, Any]]] = [
-        (best.fit.p, Reason.UNEXPLAINED, {}),
+        (best.p, Reason.UNEXPLAINED, {}),
         (shows, Reason.LEAVES_MORE, {"p": shows}),
     ]
-    if best.fit.p >= POSSIBLE:
+    if best.p >= POSSIBLE:
         p, parameter = best.constancy
         found.append((p, Reason.VARIES, {"p": p, "parameter": parameter}))
     return min(found, key=itemgetter(0))
@@ -324,7 +322,7 @@ def p_where_it_shows(base: Fit, fit: Fit) -> float:
 
 
 def on_held_out_tests(
-    finding: Finding, base: Explanation, removed: float, interval: Sequence[float] | None
+    finding: Finding, base: Fit, removed: float, interval: Sequence[float] | None
 ) -> Finding:
     """The finding, weakened if its cause may make predictions of held-out tests worse.
 
@@ -335,7 +333,7 @@ def on_held_out_tests(
     ----------
     finding : Finding
         The verdict of ``decide``.
-    base : Explanation
+    base : Fit
         The fitted base model.
     removed : float
         Share of the excess on held-out tests that the cause removes.
@@ -349,7 +347,7 @@ def on_held_out_tests(
     doubted = replace(finding, reason=Reason.UNCONFIRMED, numbers={})
     if interval is None:
         return replace(doubted, verdict=CONSISTENT) if finding.verdict == NAMED else finding
-    if tolerable(base.fit):
+    if tolerable(base):
         return _nothing_missing(base)
     rival_adequate = any(each.p_value >= ADEQUATE for each in finding.rivals)
     if _against(base, cause)[0] < ADEQUATE and not rival_adequate:
@@ -392,7 +390,7 @@ def by_accuracy(finding: Finding, levels: "Sequence[Level]") -> Finding:
     numbers: dict[str, Any] = {"accuracy": best.accuracy, "base": levels[0].best.accuracy}
     numbers |= {"next_best": _next_best(levels, size, leading[size]), "held_out": best.held_out}
     numbers |= {"rivals": _accuracies(rivals), "larger": _accuracies(close)}
-    if best.explanation.fit.p >= ADEQUATE:
+    if best.explanation.p >= ADEQUATE:
         numbers["parameter"] = best.explanation.constancy.parameter
     tied, fits = tuple(each.explanation for each in rivals), tuple(each.fit for each in close)
     return Finding(TIED if tied else CONSISTENT, Reason.MORE_ACCURATE, best.explanation, tied, numbers, fits)
@@ -449,12 +447,12 @@ def _holds(larger: "Rated", leading: "Sequence[Rated]") -> bool:
     return any(parts(each.effects) <= parts(larger.effects) for each in leading)
 
 
-def _unexplained(base: Explanation, best: Explanation | None) -> Finding:
+def _unexplained(base: Fit, best: Fit | None) -> Finding:
     """The finding where nothing explains the misfit."""
-    if base.fit.model.data.tests < FEWEST_TESTS:
+    if base.model.data.tests < FEWEST_TESTS:
         return Finding(INSUFFICIENT, Reason.FEW_TESTS, best)
     return Finding(NONE, Reason.UNEXPLAINED, best)
 
 
-def _abstention(base: Explanation) -> str:
-    return NONE if base.fit.model.data.tests >= FEWEST_TESTS else INSUFFICIENT
+def _abstention(base: Fit) -> str:
+    return NONE if base.model.data.tests >= FEWEST_TESTS else INSUFFICIENT

@@ -14,14 +14,14 @@ MODELS = ["base", "extended"]
 
 def dataset(found: Diagnosis) -> xr.Dataset:
     """Arrays of a diagnosis for figures and notebooks; of several kinds of test, what all of them have."""
-    return _dataset(found, found.data, found.base.fit, found.extended)
+    return _dataset(found, found.data, found.base, found.extended)
 
 
 def parts(found: Diagnosis) -> dict[str, xr.Dataset]:
     """The dataset of each kind of test where there are several."""
     if len(found.data.parts) == 1:
         return {}
-    base, extended = found.data.fits(found.base.fit), found.data.fits(found.extended)
+    base, extended = found.data.fits(found.base), found.data.fits(found.extended)
     own = zip(found.data.parts, base, extended, strict=True)
     return {part.kind: _dataset(found, part, *fits) for part, *fits in own}
 

@@ -12,7 +12,7 @@ from wedgesweep import __version__, rotation
 from wedgesweep.config import Config
 from wedgesweep.diagnose.cross_validation import Gain
 from wedgesweep.diagnose.diagnosis import Diagnosis, excluded_effects
-from wedgesweep.diagnose.explanation import ADEQUATE, POSSIBLE, Explanation, parameter_penalty
+from wedgesweep.diagnose.explanation import ADEQUATE, POSSIBLE, parameter_penalty
 from wedgesweep.diagnose.ladder import REFINED, ByRecord, Level, Rated
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.next_test.recommend import SEPARATED, NextTest
@@ -51,7 +51,7 @@ def document(found: Diagnosis) -> dict[str, Any]:
         "record_by_record": [_of_records(each) for each in found.by_record],
         "empirical_force": missing_force.document(found.empirical),
         "extended": list(best.effects),
-        "never_steady": _never_steady(best.fit),
+        "never_steady": _never_steady(best),
         "untried": [{"what": each.what, "left_out": each.left_out, "of": each.of} for each in found.untried],
         "never_tried": [list(each) for each in found.never_tried],
         "unfinished": [{"step": step, "reason": why} for step, why in found.unfinished.items()],
@@ -67,7 +67,7 @@ def document(found: Diagnosis) -> dict[str, Any]:
             "title": data.model.title,
             **_surface(data.model),
         },
-        "uncertain": uncertain(best.fit),
+        "uncertain": uncertain(best),
         "version": __version__,
         "created": datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ"),
         "method": _method(found),
@@ -118,7 +118,7 @@ def _causes(finding: Finding) -> list[dict[str, Any]]:
     """The effects of the cause with their parameters."""
     if finding.cause is None:
         return []
-    numbers = parameters(finding.cause.fit)
+    numbers = parameters(finding.cause)
     for each in finding.larger:
         widen(numbers, parameters(each))
     return [
@@ -132,31 +132,31 @@ def _causes(finding: Finding) -> list[dict[str, Any]]:
     ]
 
 
-def _misfit(found: Diagnosis, best: Explanation) -> dict[str, Any]:
-    base = found.base.fit
+def _misfit(found: Diagnosis, best: Fit) -> dict[str, Any]:
+    base = found.base
     return {
         "chi2_base": base.chi2,
-        "chi2_extended": best.fit.chi2,
+        "chi2_extended": best.chi2,
         "dof": base.dof,
-        "dof_extended": best.fit.dof,
+        "dof_extended": best.dof,
         "excess_base": base.excess,
         "p_base": base.p,
         "implausible": list(base.implausible),
-        "p_extended": best.fit.p,
-        "p_where_it_shows": p_where_it_shows(base, best.fit),
+        "p_extended": best.p,
+        "p_where_it_shows": p_where_it_shows(base, best),
         **_constancy(best),
         "tests": _tests(found),
     }
 
 
-def _constancy(best: Explanation) -> dict[str, Any]:
+def _constancy(best: Fit) -> dict[str, Any]:
     """Whether parameters are the same in all tests; null where the misfit alone rules the fit out."""
-    p, parameter = best.constancy if best.fit.p >= POSSIBLE else (None, None)
+    p, parameter = best.constancy if best.p >= POSSIBLE else (None, None)
     return {"p_constant": p, "least_constant": parameter}
 
 
 def _tests(found: Diagnosis) -> list[dict[str, Any]]:
-    data, base, best = found.data, found.base.fit, found.extended
+    data, base, best = found.data, found.base, found.extended
     misfits = base.evaluation.chi2_by_test, best.evaluation.chi2_by_test
     rows = zip(data.names, data.rows(base, best), *misfits, data.dof, strict=True)
     return [
@@ -251,7 +251,7 @@ def _method(found: Diagnosis) -> dict[str, Any]:
         "larger_model_error": LARGER * found.data.model_error,
         "noise_floor": found.data.noise_floor,
         "least_gain": found.thresholds.least_gain,
-        "dof": found.base.fit.dof,
+        "dof": found.base.dof,
         **found.data.method,
         "calibrated": found.calibration,
     }
@@ -264,13 +264,13 @@ def _candidates(found: Diagnosis, hidden: Sequence[str]) -> list[dict[str, Any]]
     for each in sorted([found.base, *found.explanations], key=lambda one: one.penalised):
         score = scores.get(each.effects[0]) if len(each.effects) == 1 else None
         status = _status(found, each, hidden)
-        numbers = parameters(each.fit) if status not in (FAILED, NO_BETTER) else {}
+        numbers = parameters(each) if status not in (FAILED, NO_BETTER) else {}
         rows.append(
             {
                 "effects": list(each.effects),
-                "q": each.fit.chi2,
-                "dof": each.fit.dof,
-                "p": each.fit.p,
+                "q": each.chi2,
+                "dof": each.dof,
+                "p": each.p,
                 "penalised": each.penalised,
                 "accuracy": accuracies.get(each.effects),
                 "parameters": _by_name(numbers),
@@ -282,10 +282,10 @@ def _candidates(found: Diagnosis, hidden: Sequence[str]) -> list[dict[str, Any]]
     return rows
 
 
-def _status(found: Diagnosis, each: Explanation, hidden: Sequence[str]) -> str:
+def _status(found: Diagnosis, each: Fit, hidden: Sequence[str]) -> str:
     """How a fit ended; one worse than the base model that it contains has not found its minimum."""
-    if not isfinite(each.fit.chi2):
+    if not isfinite(each.chi2):
         return FAILED
-    if each.fit.chi2 > found.base.fit.chi2 + SLIGHT:
+    if each.chi2 > found.base.chi2 + SLIGHT:
         return NO_BETTER
     return "not testable" if len(each.effects) == 1 and each.effects[0] in hidden else "fitted"
