@@ -162,9 +162,9 @@ def test_an_acceleration_under_a_force_tells_mass_spring_and_damper(tmp_path):
     _, acceleration, _ = signal.lsim(system, force, t)
     noise = 0.01 * np.random.default_rng(0).normal(size=(2, t.size))
     columns = t, force + noise[0], acceleration + noise[1]
-    own = begun(
-        tmp_path, text(tmp_path / "a.csv", *columns, header="s,Force (N),Acc (m/s^2)")
-    ).model.oscillator
+    found = begun(tmp_path, text(tmp_path / "a.csv", *columns, header="s,Force (N),Acc (m/s^2)"))
+    assert found.uncertain.keys() == {"bolster_mass", "bolster_stiffness", "damping_level"}
+    own = found.model.oscillator
     assert own["mass"] == pytest.approx(mass, rel=0.03)
     assert own["spring"] == pytest.approx(spring, rel=0.03)
     assert own["damping"] == pytest.approx(damping, rel=0.1)

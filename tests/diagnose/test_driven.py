@@ -79,6 +79,18 @@ def test_a_cause_without_mechanics_of_its_own_is_named_under_a_swept_sine(tmp_pa
     is_told(found, SOFT, 1e-3)
 
 
+def test_a_damper_that_is_too_strong_is_fitted_beside_a_cause_where_it_is_uncertain(tmp_path):
+    """The model has 10 % more damping than the rig, as a first estimate from data may have."""
+    hidden = {"friction_level": {"scale": 1.3}}
+    model = OSCILLATOR.replace("damping_N_s_per_m = 1.0", "damping_N_s_per_m = 5.0")
+    more = "[measurement.uncertain]\ndamping_level = 0.1\n"
+    path = write(tmp_path, [4e-3 * chirp()], hidden | {"damping_level": {"scale": 0.9}}, model, more=more)
+    found = diagnosed(path, [*hidden, "viscous_damping"])
+    assert found.verdict == "named"
+    is_told(found, hidden, 5e-3)
+    assert found.document["uncertain"]["damping_level"]["scale"] == pytest.approx(0.9, abs=0.01)
+
+
 @pytest.mark.acceptance
 def test_a_cause_is_named_under_a_random_motion(tmp_path):
     found = diagnosed(write(tmp_path, [2e-3 * rough(3)], HIDDEN), CANDIDATES[:2])

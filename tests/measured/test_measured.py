@@ -15,6 +15,8 @@ from wedgesweep.measured.channels import model_faults
 from wedgesweep.measured.cycles import estimate_noise
 from wedgesweep.measured.declarations import PARAMETERS
 
+OF_THE_BENCH = ("bolster_stiffness", "wedge_stiffness", "bolster_mass", "friction_level")
+
 
 @pytest.fixture
 def bench(tmp_path):
@@ -72,11 +74,37 @@ def test_a_model_instead_of_the_one_that_is_named(tmp_path):
 
 
 def test_the_scales_of_the_parameters_family_can_be_uncertain(tmp_path):
-    table = "".join(f"{name} = 0.0{i}\n" for i, name in enumerate(PARAMETERS, 1))
+    assert set(PARAMETERS) == {*OF_THE_BENCH, "damping_level"}
+    table = "".join(f"{name} = 0.0{i}\n" for i, name in enumerate(OF_THE_BENCH, 1))
     text = MEASURED.replace("[[measurement.test]]", f"[measurement.uncertain]\n{table}[[measurement.test]]")
     found = measured.read(fixture_measured.write(tmp_path, text)).uncertain
-    assert found == {name: i / 100.0 for i, name in enumerate(PARAMETERS, 1)}
-    assert set(PARAMETERS) == {"bolster_stiffness", "wedge_stiffness", "bolster_mass", "friction_level"}
+    assert found == {name: i / 100.0 for i, name in enumerate(OF_THE_BENCH, 1)}
+
+
+OSCILLATOR = """
+[oscillator]
+mass_kg = 1.0
+spring_N_per_mm = 1.0
+[sweep]
+friction_law = "coulomb"
+beta = 1.0
+amplitude_mm = 1.0
+"""
+
+
+@pytest.mark.parametrize(
+    ("model", "lacking"),
+    [(MODEL, "damping_level"), (OSCILLATOR, "wedge_stiffness")],
+    ids=["suspension", "oscillator"],
+)
+def test_a_number_that_no_such_model_has_cannot_be_uncertain(tmp_path, model, lacking):
+    table = f"[measurement.uncertain]\nbolster_mass = 0.01\n{lacking} = 0.1\n"
+    path = fixture_measured.write(
+        tmp_path, MEASURED.replace("[[measurement.test]]", f"{table}[[measurement.test]]")
+    )
+    (tmp_path / "other.toml").write_text(model)
+    (fault,) = problems(path, model=tmp_path / "other.toml")
+    assert f"measurement.uncertain.{lacking}: is a number of no " in fault
 
 
 def test_a_model_error_is_allowed_where_it_is_stated(tmp_path, bench):

@@ -29,6 +29,7 @@ STRENGTHS = {
     "bolster_stiffness": {"scale": 1.1},
     "bolster_mass": {"scale": 0.9},
     "friction_level": {"scale": 1.3},
+    "damping_level": {"scale": 2.0},
     "stribeck": {"peak": 0.2, "velocity": 0.01},
     "presliding": {"length": 2e-4},
     "ageing": {"rate": 0.02, "time": 0.01},

@@ -13,7 +13,7 @@ Numbers = Mapping[str, Mapping[str, float]]
 
 # In the order of families in which a diagnosis lists them.
 NAMES = (
-    *("bolster_stiffness", "wedge_stiffness", "bolster_mass", "preload", "friction_level"),
+    *("bolster_stiffness", "wedge_stiffness", "bolster_mass", "preload", "friction_level", "damping_level"),
     *("stribeck", "presliding", "ageing", "directional_friction", "load_dependent_friction"),
     *("position_friction", "thermal_drift"),
     *("cross_slip", "column_compliance"),

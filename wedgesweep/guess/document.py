@@ -131,6 +131,7 @@ def _uncertain(found: Numbers) -> Iterator[str]:
         "bolster_stiffness": found.spring > 0.0,
         "bolster_mass": not found.unseen,
         "friction_level": found.load > 0.0,
+        "damping_level": found.damping > 0.0 and "damping" not in found.unseen,
     }
     if any(guessed.values()):
         yield from ("", "# These numbers of the model are guesses so far; leave out what you know better.")

@@ -9,6 +9,7 @@ from typing import Any
 from wedgesweep import rotation, toml
 from wedgesweep.config import Config
 from wedgesweep.config.turned import Turned
+from wedgesweep.effects import of_system
 from wedgesweep.effects.base import OSCILLATOR
 from wedgesweep.effects.thermal_drift import TEMPERATURE
 from wedgesweep.errors import ConfigError, InputError
@@ -71,6 +72,7 @@ def read(path: Path, model: Path | None = None) -> Measurement:
     if config is not None:
         problems += [f"{model}: {fault}" for fault in channels.model_faults(config, columns, by_kind)]
         problems += _temperature_faults(path, measurement) + _override_faults(path, measurement, config)
+        problems += _uncertain_faults(path, measurement, config)
     tests = _tests(path, measurement, config, problems)
     if problems or config is None:
         raise MeasuredError(problems)
@@ -136,6 +138,13 @@ def _override_faults(path: Path, measurement: dict[str, Any], config: Config) ->
         except ConfigError as error:
             faults += error.problems
     return faults
+
+
+def _uncertain_faults(path: Path, measurement: dict[str, Any], config: Config) -> list[str]:
+    """Uncertain numbers that no model of this kind has."""
+    lacking = [name for name in measurement.get(UNCERTAIN.key, {}) if name not in of_system(config.system)]
+    why = f"is a number of no {config.system}; omit it"
+    return [f"{path}: measurement.{UNCERTAIN.key}.{name}: {why}" for name in lacking]
 
 
 def _temperature_faults(path: Path, measurement: dict[str, Any]) -> list[str]:

@@ -51,7 +51,7 @@ FORCE = "force"
 EXCITATIONS = (BASE, FORCE)
 
 # Effects that scale a number of the oscillator.
-SCALED = {"bolster_stiffness": "spring", "bolster_mass": "mass"}
+SCALED = {"bolster_stiffness": "spring", "bolster_mass": "mass", "damping_level": "damping"}
 # An effect that scales the coefficients of friction, and all that have no part of their own in a record.
 OF_LOAD = load_dependent_friction.EFFECT.name
 ADJUSTED = (*SCALED, OF_LOAD)
