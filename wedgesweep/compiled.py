@@ -7,7 +7,7 @@ from what that needs, or ``WEDGESWEEP_COMPILER=plain`` asks for it, numba's own 
 
 import inspect
 from ast import literal_eval
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from functools import cache
 from typing import Any, TypeVar, cast
@@ -217,22 +217,27 @@ def by_type(function: Callable) -> Callable[[Function], Function]:
 _BY_TYPE: set[Callable] = set()
 
 
-def by_record(function: Function, choose: Callable[[Mapping[str, Any]], Callable]) -> Function:
+def by_record(function: Function, choose: Callable[..., Callable], vector: str | None = None) -> Function:
     """Let compiled code call another function in place of this one, chosen by the type of the record ``p``.
 
     ``choose`` gets the fields of the record's type and returns the function, compiled or plain, so that what
-    a record has no fields for costs nothing. Returns ``function`` itself, which is what Python would call.
+    a record has no fields for costs nothing. It also gets the length of the argument ``vector``, if one is
+    named. Returns ``function`` itself, which is what Python would call.
     """
-    place = list(inspect.signature(function).parameters).index("p")
+    arguments = list(inspect.signature(function).parameters)
+    place, of_vector = arguments.index("p"), arguments.index(vector) if vector else 0
 
     @cache
-    def chosen_for(record: types.Record) -> Callable:
-        chosen = choose(cast(Any, record).fields)
+    def chosen_for(record: types.Record, *length: int) -> Callable:
+        chosen = choose(cast(Any, record).fields, *length)
         return inlined(chosen) if inspect.isfunction(chosen) and chosen not in _BY_TYPE else chosen
 
-    by_type(function)(
-        lambda *kinds: chosen_for(kinds[place]) if isinstance(kinds[place], types.Record) else None
-    )
+    def of_types(*kinds: Any) -> Callable | None:
+        if not isinstance(kinds[place], types.Record):
+            return None
+        return chosen_for(kinds[place], *([len(kinds[of_vector])] if vector else []))
+
+    by_type(function)(of_types)
     return function
 
 

@@ -8,8 +8,12 @@ follows (``transition``).
 Each function below is declared here and written in ``systems/``: ``implement`` ties it to the records of a
 system, which are known by the name of one of their fields; if several fields of a record name systems, the
 first one decides. Times are in s, all else in the units of ``scales``.
+
+A system may add states to those of another one, and have modes in which only the other's states move: solvers
+follow these ``first_states`` alone there, and the functions of the other system are called.
 """
 
+import inspect
 import sys
 from collections.abc import Callable, Mapping
 from math import inf, nan
@@ -25,11 +29,26 @@ Function = TypeVar("Function", bound=Callable)
 _IMPLEMENTED: dict[Callable, dict[str, Callable]] = {}
 
 
+# Number of states of records of systems that add some, by the field that marks them.
+_STATES: dict[str, Callable[[Mapping[str, Any]], int]] = {}
+
+
+def adds_states(owner: str, count: Callable[[Mapping[str, Any]], int]) -> None:
+    """Let records with a field ``owner`` have more states than the system that they extend has.
+
+    ``count`` gets the fields of a record's type, and returns the number of all states.
+    """
+    _STATES[owner] = count
+
+
 def _declared(function: Function, default: Callable | None) -> Function:
     _IMPLEMENTED[function] = {}
+    of_state = "y" in inspect.signature(function).parameters
 
-    def choose(fields: Mapping[str, Any]) -> Callable:
+    def choose(fields: Mapping[str, Any], *length: int) -> Callable:
         for field in fields:
+            if length and field in _STATES and length[0] < _STATES[field](fields):
+                continue
             if field in _IMPLEMENTED[function]:
                 return _IMPLEMENTED[function][field]
         if default:
@@ -38,7 +57,7 @@ def _declared(function: Function, default: Callable | None) -> Function:
             f"no system with these records has {function.__name__}: {', '.join(fields)}"
         )
 
-    return by_record(function, choose)
+    return by_record(function, choose, "y" if of_state else None)
 
 
 def required(function: Function) -> Function:
@@ -166,6 +185,18 @@ def powers(t, y, mode, p):
 
 
 # What a system may leave out.
+
+
+@optional
+def only_first_move(y, mode, p):
+    """Whether a mode moves the ``first_states`` alone; only then it may be ``linear``, or have ``follow``."""
+    return True
+
+
+@optional
+def first_states(y, p):
+    """The states that the system which this one extends has as well, as a vector."""
+    return y
 
 
 @optional

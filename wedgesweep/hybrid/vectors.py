@@ -48,6 +48,19 @@ def _vector(array, like):
     return contracted_of(("array", "like"), f"({parts},)")
 
 
+def with_first(y: Any, first: Any) -> Any:
+    """The vector with others in place of its first numbers."""
+    raise NotImplementedError
+
+
+@by_type(with_first)
+def _with_first(y, first):
+    if not isinstance(y, types.BaseTuple):
+        return None
+    parts = [f"{'first' if i < len(first) else 'y'}[{i}]" for i in range(len(y))]
+    return contracted_of(("y", "first"), f"({', '.join(parts)},)")
+
+
 @inlined
 def store(y, out):
     """Write a vector into an array."""

@@ -21,11 +21,13 @@ from wedgesweep.hybrid.interface import (
     events,
     expected_event,
     fastest,
+    first_states,
     follow,
     holds,
     initial_mode,
     linear,
     never_locks,
+    only_first_move,
     opened,
     outruns,
     provided,
@@ -40,6 +42,7 @@ from wedgesweep.hybrid.recorded_step import record_step
 from wedgesweep.hybrid.search import Bracket, minimum, searched, zero, zero_after_start
 from wedgesweep.hybrid.state import CHATTERING, FAILED, LOCKED, NO_EVENT, OK, State
 from wedgesweep.hybrid.step import SHORTEST, dense_output, step_limit
+from wedgesweep.hybrid.vectors import with_first
 from wedgesweep.solvers import explicit, implicit
 
 EVENTS_PER_PERIOD = 1000
@@ -284,6 +287,22 @@ def initial_state(t, y, p):
     return State(t, y, mode, np.int64(NO_EVENT), FIRST_STEP * 2.0 * pi / fastest(p)), unique
 
 
+@inlined
+def _follow_mode(state, stop, p, keeping, recorder, work):
+    """As ``_integrate_mode``, by the method that is best for the mode."""
+    t, y, mode, last_event, h = state
+    if not only_first_move(y, mode, p):
+        return _integrate_mode(state, stop, p, keeping, recorder, work)
+    first = State(t, first_states(y, p), mode, last_event, h)
+    if linear(mode, p):
+        done, first, number = follow_linear(first, stop, p, keeping, recorder, work)
+    else:
+        done, first, number = follow(first, stop, p, keeping, recorder, work)
+    if not done:
+        first, number = _integrate_mode(first, stop, p, keeping, recorder, work)
+    return State(first.t, with_first(y, first.y), mode, first.last_event, first.step), number
+
+
 @inner
 def integrate(state, keep_from, stop, p, recorder, work):
     """Follow a run from event to event up to ``stop``, and record the part from ``keep_from`` (s) on.
@@ -299,12 +318,7 @@ def integrate(state, keep_from, stop, p, recorder, work):
     while state.t < stop:
         keeping = state.t >= keep_from
         end = stop if keeping else keep_from
-        if linear(state.mode, p):
-            done, state, number = follow_linear(state, end, p, keeping, recorder, work)
-        else:
-            done, state, number = follow(state, end, p, keeping, recorder, work)
-        if not done:
-            state, number = _integrate_mode(state, end, p, keeping, recorder, work)
+        state, number = _follow_mode(state, end, p, keeping, recorder, work)
         if number == NO_EVENT:
             continue
         if number < NO_EVENT:

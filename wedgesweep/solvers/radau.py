@@ -176,8 +176,8 @@ class _Run:
             if not self._just_passed(place):
                 return t, y, place  # it came at the same time as the event before
         places = np.flatnonzero(np.isfinite(ahead)).tolist()
-        at_rest = system.holds(mode, self.case)
-        result = self._integrate(t, stop, y, mode, places, at_rest)
+        at_rest, moving = system.of_mode(y, mode, self.case)
+        result = self._integrate(t, stop, y[:moving], mode, places, at_rest)
         if at_rest:
             _truncate_at_grazing(result, lambda t: system.events(t, result.sol(t), mode, self.case)[places])
         reached = [place for place, times in zip(places, result.t_events, strict=False) if times.size]
@@ -209,21 +209,34 @@ class _Run:
     def _integrate(
         self, t: float, stop: float, y: np.ndarray, mode: Mode, places: list[int], at_rest: bool
     ) -> Any:
+        moving = y.size
         result = solve_ivp(
             self._rate(mode),
             (t, stop),
             y,
-            method=SmallRadau if y.size == 2 else StrictRadau,
+            method=SmallRadau if moving == 2 else StrictRadau,
             jac=self._jacobian(mode),
             events=[*(self._event(t, mode, place) for place in places), _turn],
             dense_output=at_rest or t >= self.window.keep,
             rtol=self.rtol,
-            atol=ABSOLUTE * self.rtol * self.scales,
+            atol=ABSOLUTE * self.rtol * self.scales[:moving],
             max_step=self.period / (STEPS_HELD if at_rest else STEPS_PER_PERIOD),
             first_step=min(self.first_step, stop - t) if self.first_step else None,
         )
         self._check(result)
+        if moving < self.scales.size:
+            output = result.sol
+            result.sol, result.y = (lambda t: self._all(output(t))), self._all(result.y)
+            result.y_events = [self._all(states.T).T if states.size else states for states in result.y_events]
         return result
+
+    def _all(self, y: np.ndarray) -> np.ndarray:
+        """All states, shape (n,) or (n, k), from those that move: the others are 0."""
+        if len(y) == self.scales.size:
+            return y
+        states = np.zeros((self.scales.size, *y.shape[1:]))
+        states[: len(y)] = y
+        return states
 
     def _rate(self, mode: Mode) -> Callable[[float, np.ndarray], np.ndarray]:
         case, deadline = self.case, self.deadline
@@ -231,7 +244,7 @@ class _Run:
         def limited_rate(t: float, y: np.ndarray) -> np.ndarray:
             if perf_counter() > deadline:
                 raise CaseError(f"gave up after {self.time_limit:g} s at t = {t:.6g} s", "time_limit")
-            return system.rate(t, y, mode, case)
+            return system.rate(t, self._all(y), mode, case)[: y.size]
 
         return limited_rate
 
@@ -239,7 +252,7 @@ class _Run:
         case = self.case
 
         def determined(t: float, y: np.ndarray) -> np.ndarray:
-            found = system.jacobian(t, y, mode, case)
+            found = system.jacobian(t, self._all(y), mode, case)[: y.size, : y.size]
             self._require(bool(np.isfinite(found).all()), t)
             return found
 
@@ -249,7 +262,7 @@ class _Run:
         case = self.case
 
         def event(t: float, y: np.ndarray) -> float:
-            value = system.events(t, y, mode, case)[place]
+            value = system.events(t, self._all(y), mode, case)[place]
             self._require(not isnan(value), t)
             # An event that begins at zero may be negative there by rounding, which would hide its return.
             return max(value, 0.0) if t == start else value

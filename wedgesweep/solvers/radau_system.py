@@ -37,9 +37,12 @@ def initial_mode(t, y, case):
 
 
 @compiled
-def holds(mode, case):
-    """Whether contacts keep the mass at rest."""
-    return interface.holds(mode, case[0])
+def of_mode(y, mode, case):
+    """Whether contacts keep the mass at rest in a mode, and how many states it moves: the first ones."""
+    p = case[0]
+    now = vector(y, interface.scales(p))
+    moving = len(interface.first_states(now, p)) if interface.only_first_move(now, mode, p) else len(now)
+    return interface.holds(mode, p), moving
 
 
 @compiled

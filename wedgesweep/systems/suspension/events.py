@@ -78,7 +78,7 @@ def _kinematic_events(t, y, mode, p, out):
         _slip_events(t, y, mode, p, out)
 
 
-@inlined
+@inner
 def events(now, t, y, mode, p, out):
     """Write the event functions, shape (EVENTS,), under the forces ``now`` (not used if held or stuck).
 

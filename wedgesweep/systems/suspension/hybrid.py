@@ -7,20 +7,17 @@ from wedgesweep.compiled import inlined, inner
 from wedgesweep.effects import guide_friction, presliding, states
 from wedgesweep.hybrid import interface
 from wedgesweep.hybrid.interface import implement
+from wedgesweep.hybrid.state import NO_EVENT
 from wedgesweep.hybrid.vectors import replaced
 from wedgesweep.systems.shared import implement_shared
-from wedgesweep.systems.suspension import (  # noqa: F401
-    events,
-    follow,
-    sticking,
-    stiffness,
-    transitions,
-)
+from wedgesweep.systems.suspension import events, stiffness, transitions  # noqa: F401
 from wedgesweep.systems.suspension.energy import damping_power, friction_power, supplied_power
 from wedgesweep.systems.suspension.faces import column_slip
 from wedgesweep.systems.suspension.filippov import filippov_forces
 from wedgesweep.systems.suspension.modes import VELOCITY, X, held, stuck
 from wedgesweep.systems.suspension.newton import driving_force, forces
+from wedgesweep.systems.suspension.series_slip import follow_series, has_series
+from wedgesweep.systems.suspension.sticking import follow_stuck
 
 SUSPENSION = "suspension"
 
@@ -63,6 +60,17 @@ def linear(mode, p):
     bolster = mode.bolster != 0 or p.geometry.bolster_ratio == 0.0
     guide = mode.guide != 0 or not guide_friction.acts(p)
     return mode.column != 0 and bolster and guide and friction.is_constant(p)
+
+
+@implement(interface.follow, SUSPENSION)
+@inlined
+def follow(state, stop, p, keeping, recorder, work):
+    """Rest in closed form, and power series."""
+    if stuck(state.mode, p):
+        return follow_stuck(state, stop, p, keeping, recorder, work)
+    if has_series(state.mode, p):
+        return follow_series(state, stop, p, keeping, recorder, work)
+    return False, state, NO_EVENT
 
 
 @implement(interface.free, SUSPENSION)

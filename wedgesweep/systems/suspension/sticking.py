@@ -105,7 +105,7 @@ def _waits_for_input(y, mode, p):
     if not stuck(mode, p) or stray_vibration.acts(p) or input_distortion.acts(p):
         return False
     moving, rests = free(y, p), True
-    for i in range(VELOCITY + 1, len(moving)):
+    for i in range(VELOCITY + 1, len(y)):
         rests = rests and not moving[i]
     return rests
 

@@ -28,6 +28,7 @@ from wedgesweep.systems.suspension.modes import (
 )
 from wedgesweep.systems.suspension.newton import Accelerations, solve_for_signs, stuck_forces
 from wedgesweep.systems.suspension.set_valued import breakaway_direction, mode_at_zero_velocity
+from wedgesweep.systems.suspension.unilateral.closed import are_unique
 
 
 @inner
@@ -88,9 +89,14 @@ def initial_mode(t, y, p):
 
 @inner
 def well_posed(t, y, mode, p):
-    """Whether exactly one pair of normal forces is possible; if not, the wedge locks."""
+    """Whether exactly one pair of normal forces is possible; if not, the wedge locks.
+
+    Of joints that can open: in a mode in which they surely stay closed (see ``unilateral/closed.py``).
+    """
     if p.geometry.always_well_posed:
         return True
+    if p.geometry.opens:
+        return are_unique(y, mode, p)
     if stuck(mode, p):
         return mode_at_zero_velocity(t, y, mode.segment, p)[1]
     return resolve_mode(t, y, mode, p)[2]

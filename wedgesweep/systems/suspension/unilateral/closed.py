@@ -3,7 +3,7 @@
 They have the same equations there, and the same methods follow them: closed forms and power series.
 """
 
-from wedgesweep.compiled import inlined
+from wedgesweep.compiled import inlined, inner
 from wedgesweep.systems.suspension.faces import coefficients
 from wedgesweep.systems.suspension.modes import VELOCITY, held, stuck
 from wedgesweep.systems.suspension.sticking import carries_load_until_breakaway
@@ -11,7 +11,7 @@ from wedgesweep.systems.suspension.unilateral.contacts import SINGULAR, regulari
 
 
 @inlined
-def _are_unique(y, mode, p):
+def are_unique(y, mode, p):
     """Whether closed contacts that slip are the only solution; elsewhere they never are.
 
     Principal minors of the problem are those of each face, which are positive here, and this determinant. If
@@ -21,7 +21,7 @@ def _are_unique(y, mode, p):
     return regularity(column_mu, bolster_mu, p) > SINGULAR
 
 
-@inlined
+@inner
 def stays_closed(y, mode, p):
     """Whether a mode is one of bilateral joints: both contacts carry load, and it ends if one does not.
 
@@ -33,5 +33,5 @@ def stays_closed(y, mode, p):
         return False
     if not p.geometry.always_well_posed:
         slips = not p.friction.set_valued or (y[VELOCITY] != 0.0 and not stuck(mode, p))
-        return slips and p.geometry.each_face_well_posed and _are_unique(y, mode, p)
+        return slips and p.geometry.each_face_well_posed and are_unique(y, mode, p)
     return not stuck(mode, p) or carries_load_until_breakaway(y, mode.segment, p)

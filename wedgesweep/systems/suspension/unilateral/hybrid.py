@@ -13,13 +13,10 @@ from wedgesweep.compiled import inlined, inner
 from wedgesweep.effects import guide_friction, hooks, states, travel
 from wedgesweep.hybrid import interface
 from wedgesweep.hybrid.interface import implement
-from wedgesweep.hybrid.state import NO_EVENT
-from wedgesweep.hybrid.vectors import replaced
+from wedgesweep.hybrid.vectors import replaced, with_first
 from wedgesweep.systems.suspension import energy, events, filippov, transitions
-from wedgesweep.systems.suspension import follow as bilateral
+from wedgesweep.systems.suspension import hybrid as bilateral
 from wedgesweep.systems.suspension.events import BOLSTER_NORMAL, COLUMN_NORMAL, EVENTS, TRAVEL
-from wedgesweep.systems.suspension.hybrid import forces_and_power
-from wedgesweep.systems.suspension.hybrid import linear as slips_linearly
 from wedgesweep.systems.suspension.modes import (
     BOLSTER,
     COLUMN,
@@ -56,14 +53,28 @@ from wedgesweep.systems.suspension.unilateral.motion import (
     UNILATERAL,
     frame_acceleration,
     free_accelerations,
-    gap_state,
     kinetic_energy,
     momentum_against_table,
     velocities,
     with_gaps,
+    without_gaps,
 )
 
 implement(interface.holds, UNILATERAL)(stuck)
+
+
+@implement(interface.only_first_move, UNILATERAL)
+@inlined
+def only_first_move(y, mode, p):
+    """While both contacts surely carry load."""
+    return stays_closed(without_gaps(y), mode, p)
+
+
+@implement(interface.first_states, UNILATERAL)
+@inlined
+def first_states(y, p):
+    """Those of bilateral joints."""
+    return without_gaps(y)
 
 
 @implement(interface.opened, UNILATERAL)
@@ -88,14 +99,12 @@ def free(y, p):
 
 
 class UnilateralForces(NamedTuple):
-    """Accelerations (m/s^2) of bolster, column and both gaps, and reactions (N) of both faces and the guide.
+    """Accelerations (m/s^2) of both gaps, and reactions (N) of both faces and the guide.
 
     Events of bilateral joints read the fields that have the names of ``newton.Forces``. Friction is NaN while
     both contacts are closed: no event needs it. The ``guide`` has a reaction while it holds the bolster.
     """
 
-    acceleration: float
-    column_acceleration: float
     gap_accelerations: tuple
     column: float
     column_friction: float
@@ -135,21 +144,18 @@ def _motion_and_reactions(t, y, mode, p):
 def rate(t, y, mode, p):
     """dy/dt, and the forces."""
     if closed(mode):
-        of_closed, both = transitions.rate(t, y, mode, p)
-        of_gaps = (0.0, 0.0)
-        forces = UnilateralForces(
-            both.acceleration, both.column_acceleration, of_gaps, both.column, nan, both.bolster, nan, nan
-        )
+        of_closed, both = transitions.rate(t, without_gaps(y), mode, p)
+        forces = UnilateralForces((0.0, 0.0), both.column, nan, both.bolster, nan, nan)
         return of_closed + (0.0, 0.0, 0.0, 0.0), forces  # noqa: RUF005
     motion, now, guide = _motion_and_reactions(t, y, mode, p)
     column_rate, column_acceleration, bolster_rate, bolster_acceleration = 0.0, 0.0, 0.0, 0.0
     if mode.column_sign == 0:
-        column_rate, column_acceleration = gap_state(y, COLUMN_RATE), motion.gap
+        column_rate, column_acceleration = y[COLUMN_RATE], motion.gap
     if mode.bolster_sign == 0:
-        bolster_rate, bolster_acceleration = gap_state(y, BOLSTER_RATE), bolster_gap(motion, p)
+        bolster_rate, bolster_acceleration = y[BOLSTER_RATE], bolster_gap(motion, p)
     of_gaps = column_acceleration, bolster_acceleration
     forces = UnilateralForces(
-        motion.rise, nan, of_gaps, now.column, now.column_friction, now.bolster, now.bolster_friction, guide
+        of_gaps, now.column, now.column_friction, now.bolster, now.bolster_friction, guide
     )
     others = Accelerations(0.0, frame_acceleration(t, motion, y, p))
     own = hooks.rates(velocities(y, p).along, others, mode, y, p)
@@ -189,13 +195,13 @@ def _open_events(now, y, mode, p, out):
     if guide_friction.acts(p):
         _branch_events(y[VELOCITY], mode.guide, p.guide_friction.force, now.guide, GUIDE, p, out)
     if mode.column_sign == 0:
-        out[COLUMN_CLOSES] = gap_state(y, COLUMN_GAP)
+        out[COLUMN_CLOSES] = y[COLUMN_GAP]
     else:
         out[COLUMN_NORMAL] = now.column
         most = highest * now.column
         _branch_events(motion.along, mode.column, most, now.column_friction, COLUMN, p, out)
     if mode.bolster_sign == 0:
-        out[BOLSTER_CLOSES] = gap_state(y, BOLSTER_GAP)
+        out[BOLSTER_CLOSES] = y[BOLSTER_GAP]
     else:
         out[BOLSTER_NORMAL] = now.bolster
         slip, most = bolster_slip(motion, p), highest * now.bolster
@@ -214,9 +220,9 @@ def all_events(now, t, y, mode, p, out):
     if stuck(mode, p):
         _stuck_events(t, y, mode, p, out)
     elif closed(mode):
-        events.events(now, t, y, mode, p, out)
+        events.events(now, t, without_gaps(y), mode, p, out)
         if held(mode):  # by a jump of friction: the forces are those of its convex combination
-            both = filippov.forces_of_mode(t, y, mode, p)
+            both = filippov.filippov_forces(t, without_gaps(y), mode, p)[0]
             out[COLUMN_NORMAL], out[BOLSTER_NORMAL] = both.column, both.bolster
     else:
         _open_events(now, y, mode, p, out)
@@ -239,15 +245,13 @@ def _time_to_close(gap, rate, acceleration):
 @implement(interface.expected_event, UNILATERAL)
 @inlined
 def expected_event(now, t, y, mode, p):
-    """Time (s) in which a face would reach the end of its branch, or an open one would close."""
-    if closed(mode):
-        return events.expected_event(now, t, y, mode, p)
+    """Time (s) in which an open face would close."""
     column, bolster = inf, inf
     if mode.column_sign == 0:
-        gap, speed = gap_state(y, COLUMN_GAP), gap_state(y, COLUMN_RATE)
+        gap, speed = y[COLUMN_GAP], y[COLUMN_RATE]
         column = _time_to_close(gap, speed, now.gap_accelerations[0])
     if mode.bolster_sign == 0:
-        gap, speed = gap_state(y, BOLSTER_GAP), gap_state(y, BOLSTER_RATE)
+        gap, speed = y[BOLSTER_GAP], y[BOLSTER_RATE]
         bolster = _time_to_close(gap, speed, now.gap_accelerations[1])
     return min(column, bolster)
 
@@ -256,8 +260,6 @@ def expected_event(now, t, y, mode, p):
 @inner
 def event(place, t, y, mode, p, out):
     """One of them."""
-    if closed(mode) and not stuck(mode, p) and place < COLUMN_NORMAL and not held(mode):
-        return events.event(place, t, y, mode, p, out)
     all_events(rate(t, y, mode, p)[1], t, y, mode, p, out)
     return out[place]
 
@@ -270,8 +272,8 @@ def event(place, t, y, mode, p, out):
 def initial_mode(t, y, p):
     """Mode in which a run begins, and whether it is unique."""
     if column_touches(y) and bolster_touches(y):
-        mode, unique = transitions.initial_mode(t, y, p)
-        if unique and stays_closed(y, mode, p):
+        mode, unique = transitions.initial_mode(t, without_gaps(y), p)
+        if unique and stays_closed(without_gaps(y), mode, p):
             return mode, True
     return _of_state(t, y, p)
 
@@ -294,10 +296,10 @@ def _at_rest(mode, place):
 @inner
 def well_posed(t, y, mode, p):
     """Whether exactly one mode is possible."""
-    if p.geometry.always_well_posed or stays_closed(y, mode, p):
+    if p.geometry.always_well_posed or stays_closed(without_gaps(y), mode, p):
         return True
     if held(mode):
-        return transitions.well_posed(t, y, mode, p)
+        return filippov.resolve_mode(t, without_gaps(y), mode, p)[2]
     return resolve(t, y, mode, p)[1]
 
 
@@ -315,7 +317,7 @@ def _after_slip(t, y, mode, place, p):
     if not closed(mode):
         axis = place // 2
         return y, with_branch(mode, axis, mode[axis] + 2 * (place % 2) - 1, p), True
-    across, certain = transitions.cross_discontinuity(t, y, mode, place, p)
+    across, certain = transitions.cross_discontinuity(t, without_gaps(y), mode, place, p)
     if closed(across) and certain:
         return y, across, True
     found, certain = resolve(t, y, without_jump(t, y, with_signs(across, 1, 1), p), p)
@@ -330,9 +332,11 @@ def transition(t, y, mode, place, p):
     Joints that can open lock where bilateral ones do not, and the other way round: a normal force that pulls
     is no solution. Where bilateral joints know of none or of several modes, the others have to find it.
     """
-    if stays_closed(y, mode, p):
-        y, found, unique = transitions.transition(t, y, mode, place, p)
-        if not (unique and stays_closed(y, found, p)):
+    first = without_gaps(y)
+    if stays_closed(first, mode, p):
+        first, found, unique = transitions.transition(t, first, mode, place, p)
+        y = with_first(y, first)
+        if not (unique and stays_closed(first, found, p)):
             found, unique = _opening(t, y, found, unique, p)
         return y, found, unique
     return _of_opening(t, y, mode, place, p)
@@ -385,33 +389,11 @@ def of_impact(y, mode, place, p):
 @inner
 def powers(t, y, mode, p):
     """Power taken and supplied, and the normal forces; not determined while set-valued friction holds."""
-    column, bolster, power = nan, nan, 0.0
-    if not closed(mode):
-        _, now, _ = _motion_and_reactions(t, y, mode, p)
-        motion = velocities(y, p)
-        faces = now.column_friction * motion.along + now.bolster_friction * bolster_slip(motion, p)
-        of_guide = guide_friction.force(y[VELOCITY], mode.guide, p) * y[VELOCITY]
-        column, bolster, power = now.column, now.bolster, 2.0 * faces - of_guide
-    elif not stuck(mode, p):
-        column, bolster, power = forces_and_power(t, y, mode, p)
+    if closed(mode):
+        return bilateral.powers(t, without_gaps(y), mode, p)
+    _, now, _ = _motion_and_reactions(t, y, mode, p)
+    motion = velocities(y, p)
+    faces = now.column_friction * motion.along + now.bolster_friction * bolster_slip(motion, p)
+    of_guide = guide_friction.force(y[VELOCITY], mode.guide, p) * y[VELOCITY]
     supplied = -excitation.acceleration(t, p) * momentum_against_table(y, p)
-    return power + energy.damping_power(y, p), supplied, column, bolster
-
-
-# Methods of bilateral joints
-
-
-@implement(interface.follow, UNILATERAL)
-@inlined
-def follow(state, stop, p, keeping, recorder, work):
-    """Those of bilateral joints, while both contacts surely carry load."""
-    if stays_closed(state.y, state.mode, p):
-        return bilateral.follow(state, stop, p, keeping, recorder, work)
-    return False, state, NO_EVENT
-
-
-@implement(interface.linear, UNILATERAL)
-@inlined
-def linear(mode, p):
-    """Whether two closed contacts slip under constant friction: no state of such a case can lock."""
-    return p.geometry.opens and closed(mode) and slips_linearly(mode, p)
+    return 2.0 * faces - of_guide + energy.damping_power(y, p), supplied, now.column, now.bolster

@@ -35,7 +35,6 @@ from wedgesweep.systems.suspension.unilateral.motion import (
     COLUMN_GAP,
     COLUMN_RATE,
     frame_jump,
-    gap_state,
     velocities,
     with_gaps,
 )
@@ -81,7 +80,7 @@ def struck(y, column, bolster, restitution, p):
     part = 1.0 + restitution
     change = Motion(*combination(part, (1.0, -1.0), (plastic, before)))
     after = Motion(*weighted(before, 1.0, (1.0,), (change,)))
-    rate_before = gap_state(y, BOLSTER_RATE)
+    rate_before = y[BOLSTER_RATE]
     nothing = STILL * (states.scales(p)[VELOCITY] + abs(before.gap) + abs(rate_before))
     column_rate = _gap_rate(found.column, before.gap, after.gap, restitution, nothing)
     bolster_rate = _gap_rate(found.bolster, rate_before, bolster_gap(after, p), restitution, nothing)
@@ -89,19 +88,14 @@ def struck(y, column, bolster, restitution, p):
     if column_rate == 0.0 and bolster_rate == 0.0 and column and bolster and abs(velocity) <= nothing:
         velocity = 0.0
     gaps = (
-        0.0 if column else gap_state(y, COLUMN_GAP),
+        0.0 if column else y[COLUMN_GAP],
         column_rate if column else after.gap,
-        0.0 if bolster else gap_state(y, BOLSTER_GAP),
+        0.0 if bolster else y[BOLSTER_GAP],
         bolster_rate if bolster else bolster_gap(after, p),
     )
     frame = fixture_resonance.velocity(y, p) + frame_jump(change, p)
     later = fixture_resonance.with_velocity(replaced(y, VELOCITY, velocity), frame, p)
     return Impact(with_gaps(later, gaps), Reactions(*combination(part, (1.0,), (found.reactions,))), unique)
-
-
-@inlined
-def _touches(gap, rate, y):
-    return gap_state(y, gap) == 0.0 and gap_state(y, rate) <= 0.0
 
 
 @inner
@@ -110,7 +104,9 @@ def closing(y, mode, place, p):
 
     A contact that has opened just now, and does not move apart yet, still takes part in it.
     """
-    column = mode.column_sign == 1 or place == COLUMN_CLOSES or _touches(COLUMN_GAP, COLUMN_RATE, y)
-    bolster = mode.bolster_sign == 1 or place == BOLSTER_CLOSES or _touches(BOLSTER_GAP, BOLSTER_RATE, y)
-    approach = -gap_state(y, COLUMN_RATE if place == COLUMN_CLOSES else BOLSTER_RATE)
+    column = y[COLUMN_GAP] == 0.0 and y[COLUMN_RATE] <= 0.0
+    bolster = y[BOLSTER_GAP] == 0.0 and y[BOLSTER_RATE] <= 0.0
+    column = column or mode.column_sign == 1 or place == COLUMN_CLOSES
+    bolster = bolster or mode.bolster_sign == 1 or place == BOLSTER_CLOSES
+    approach = -(y[COLUMN_RATE] if place == COLUMN_CLOSES else y[BOLSTER_RATE])
     return struck(y, column, bolster, restitution_at(approach, p), p)

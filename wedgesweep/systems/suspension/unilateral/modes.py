@@ -33,7 +33,6 @@ from wedgesweep.systems.suspension.unilateral.motion import (
     COLUMN_RATE,
     frame_acceleration,
     free_accelerations,
-    gap_state,
     velocities,
     with_gaps,
 )
@@ -68,13 +67,13 @@ def rests_in_guide(mode, p):
 @inlined
 def column_touches(y):
     """Whether the column face is closed, or about to open."""
-    return gap_state(y, COLUMN_GAP) == 0.0 and gap_state(y, COLUMN_RATE) == 0.0
+    return y[COLUMN_GAP] == 0.0 and y[COLUMN_RATE] == 0.0
 
 
 @inlined
 def bolster_touches(y):
     """Whether the bolster face is closed, or about to open."""
-    return gap_state(y, BOLSTER_GAP) == 0.0 and gap_state(y, BOLSTER_RATE) == 0.0
+    return y[BOLSTER_GAP] == 0.0 and y[BOLSTER_RATE] == 0.0
 
 
 @inlined
@@ -125,8 +124,8 @@ def _faces(y, contact, p):
 @inner
 def _later(t, y, motion, moment, p):
     """State after a moment (s) at constant accelerations of bolster and side frame, and rates of the gaps."""
-    column, column_rate = gap_state(y, COLUMN_GAP), gap_state(y, COLUMN_RATE)
-    bolster, bolster_rate = gap_state(y, BOLSTER_GAP), gap_state(y, BOLSTER_RATE)
+    column, column_rate = y[COLUMN_GAP], y[COLUMN_RATE]
+    bolster, bolster_rate = y[BOLSTER_GAP], y[BOLSTER_RATE]
     gaps = column + moment * column_rate, column_rate, bolster + moment * bolster_rate, bolster_rate
     later = fixture_resonance.later(y, moment, frame_acceleration(t, motion, y, p), p)
     later = replaced(later, X, y[X] + moment * y[VELOCITY] + 0.5 * moment * moment * motion.rise)

@@ -11,50 +11,43 @@ them are the states of the suspension with bilateral joints.
 
 from typing import Any
 
-from numba.core import types
-
 from wedgesweep.compiled import by_type, contracted_of, inlined
 from wedgesweep.effects import fixture_resonance, lift_off, states
 from wedgesweep.excitation import acceleration
+from wedgesweep.hybrid import interface
 from wedgesweep.systems.suspension.modes import VELOCITY, X
 from wedgesweep.systems.suspension.newton import applied_forces
 from wedgesweep.systems.suspension.unilateral.contacts import Motion
 
 UNILATERAL = lift_off.NAME
-# The states of the gaps, in their order.
-COLUMN_GAP, COLUMN_RATE, BOLSTER_GAP, BOLSTER_RATE = range(4)
+# The states of the gaps, from the end of a state vector.
+COLUMN_GAP, COLUMN_RATE, BOLSTER_GAP, BOLSTER_RATE = range(-4, 0)
+GAPS = (states.LENGTH, states.VELOCITY) * 2
 
-states.add_last(UNILATERAL, (states.LENGTH, states.VELOCITY) * 2)
+states.add_last(UNILATERAL, GAPS)
+interface.adds_states(UNILATERAL, lambda fields: len(states.kinds(fields)))
 
 
-def gap_state(y: Any, place: int) -> float:
-    """One of the states of the gaps; 0 in a vector that ends with the motion of the bolster."""
+def without_gaps(y: Any) -> Any:
+    """The states before those of the gaps."""
     raise NotImplementedError
 
 
-@by_type(gap_state)
-def _gap_state(y, place):
-    if not isinstance(y, types.BaseTuple):
-        return None
-    return contracted_of(("y", "place"), "0.0" if len(y) == 2 else f"y[{len(y) - 4} + place]")
+@by_type(without_gaps)
+def _without_gaps(y):
+    return contracted_of(("y",), f"({', '.join(f'y[{i}]' for i in range(len(y) - len(GAPS)))},)")
 
 
-def with_gaps(y: Any, gaps: Any) -> Any:
+@inlined
+def with_gaps(y, gaps):
     """The state with other states of the gaps, a tuple of four."""
-    raise NotImplementedError
-
-
-@by_type(with_gaps)
-def _with_gaps(y, gaps):
-    if not isinstance(y, types.BaseTuple):
-        return None
-    return contracted_of(("y", "gaps"), f"({', '.join(f'y[{i}]' for i in range(len(y) - 4))},) + gaps")
+    return without_gaps(y) + gaps
 
 
 @inlined
 def velocities(y, p):
     """Motion (m/s) against the side frame."""
-    g, column, bolster = p.geometry, gap_state(y, COLUMN_RATE), gap_state(y, BOLSTER_RATE)
+    g, column, bolster = p.geometry, y[COLUMN_RATE], y[BOLSTER_RATE]
     along = g.column_ratio * y[VELOCITY] - (bolster + g.cos_included * column) / g.sin_included
     return Motion(along, column, y[VELOCITY])
 
@@ -62,7 +55,7 @@ def velocities(y, p):
 @inlined
 def wedge_rise(y, p):
     """Rise w_z of the wedge against the side frame (m)."""
-    g, column, bolster = p.geometry, gap_state(y, COLUMN_GAP), gap_state(y, BOLSTER_GAP)
+    g, column, bolster = p.geometry, y[COLUMN_GAP], y[BOLSTER_GAP]
     along = g.column_ratio * (g.rest + y[X]) - (bolster + g.cos_included * column) / g.sin_included
     return along * g.cos_column - column * g.sin_column
 
