@@ -252,8 +252,8 @@ def test_noise_that_input_and_response_share_counts_with_its_sign():
 
 def test_a_model_error_has_no_part_in_the_noise_that_input_and_response_share():
     data = harmonic_data(measurement(0, CAUSE, noise=0.005))
-    shared = np.full_like(data.recorded.shared, 0.9)
-    data = replace(data, inputs=data.recorded._replace(shared=shared))
+    shared = np.full_like(data.inputs.shared, 0.9)
+    data = replace(data, inputs=data.inputs._replace(shared=shared))
     direct = data.with_model_error(0.02).with_covariance(stated(data))
     later = data.with_covariance(stated(data)).with_model_error(0.02)
     by_input = [np.linalg.inv(each.whitening @ each.whitening) - np.eye(32) for each in (direct, later)]
@@ -263,13 +263,13 @@ def test_a_model_error_has_no_part_in_the_noise_that_input_and_response_share():
 def test_bootstrap_samples_have_the_noise_of_responses_and_inputs():
     """And what both share: residuals of samples at the truth are of unit covariance again."""
     data = harmonic_data(measurement(0, CAUSE, noise=0.005, input_noise=0.05))
-    shared = np.full_like(data.recorded.shared, 0.6 + 0.3j)
-    data = replace(data, inputs=data.recorded._replace(shared=shared)).with_covariance(stated(data))
+    shared = np.full_like(data.inputs.shared, 0.6 + 0.3j)
+    data = replace(data, inputs=data.inputs._replace(shared=shared)).with_covariance(stated(data))
     truth = Model(data, Hypothesis(())).evaluate(stated(data).point)
     rng, squares = np.random.default_rng(5), []
     for _ in range(200):
         sample = data.bootstrap_sample(truth, rng)
-        assert (sample.recorded.displacement == data.recorded.displacement).all()
+        assert (sample.inputs.displacement == data.inputs.displacement).all()
         squares.append(sample.compared_again(truth).chi2)
     expected = data.observations.sum()
     assert np.mean(squares) == pytest.approx(expected, abs=4.0 * np.sqrt(2.0 * expected / 200))

@@ -22,8 +22,6 @@ from wedgesweep.diagnose.parameter_constancy import parameter_constancy
 
 # Range in which an accuracy is searched, and how closely.
 SMALLEST, LARGEST, PRECISION = 1e-6, 100.0, 1e-3
-# How closely (in its logarithm) one is searched at which parameters are constant, which takes simulations.
-ROUGHLY = 0.1
 # A fit is repeated at its accuracy until that improves by less than this share, at most this many times.
 GAINED, ROUNDS = 0.01, 3
 
@@ -38,10 +36,10 @@ class Accuracy(NamedTuple):
 def smallest_adequate(chi2: Callable[[float], float], dof: float) -> float:
     """Smallest model error at which chi-squared, a falling function of it, is adequate; inf if at none."""
     limit = float(chdtri(dof, ADEQUATE))
-    return _smallest(lambda size: log(max(chi2(size), 1e-300) / limit), PRECISION)
+    return _smallest(lambda size: log(max(chi2(size), 1e-300) / limit))
 
 
-def _smallest(over: Callable[[float], float], precision: float) -> float:
+def _smallest(over: Callable[[float], float]) -> float:
     """Smallest model error at which a falling function is not above 0; inf if at none."""
     if over(0.0) <= 0.0:
         return 0.0
@@ -49,7 +47,7 @@ def _smallest(over: Callable[[float], float], precision: float) -> float:
         return inf
     if over(SMALLEST) <= 0.0:
         return SMALLEST
-    return exp(brentq(lambda size: over(exp(size)), log(SMALLEST), log(LARGEST), xtol=precision))
+    return exp(brentq(lambda size: over(exp(size)), log(SMALLEST), log(LARGEST), xtol=PRECISION))
 
 
 def of_responses(parts: Sequence[tuple[FitData, Evaluation]], dof: float) -> float:
@@ -81,7 +79,7 @@ def with_constant_parameters(fit: Fit) -> float:
         here = replace(fit, model=fit.model.on(data), evaluation=data.compared_again(fit.evaluation))
         return log(ADEQUATE / max(parameter_constancy(here).p, 1e-300))
 
-    return _smallest(over, ROUGHLY)
+    return _smallest(over)
 
 
 def refined(fit: Fit) -> Accuracy:

@@ -15,10 +15,8 @@ from wedgesweep.diagnose.least_squares import BRIEF, minimise, subset_fit
 from wedgesweep.diagnose.model import Fit, Model
 from wedgesweep.diagnose.normal_equations import normal_equations
 
-# Steps of the nuisance parameters of held-out tests.
-LOCAL = 4
-# Largest step of a nuisance parameter of a held-out test.
-LOCAL_STEP = 0.3
+# Gauss-Newton steps of what is fitted to a single test, and the largest one of a nuisance parameter.
+GAUSS_NEWTON, LOCAL_STEP = 4, 0.3
 # Bootstrap samples, and the least number of tests for which an interval means anything.
 RESAMPLED, FEWEST = 2000, 8
 # Bootstrap samples with less than this share of the excess do not count: there is nothing to be removed.
@@ -227,7 +225,7 @@ def with_own_nuisances(model: Model, point: Point) -> Evaluation:
     """Evaluation of held-out tests after steps of their nuisance parameters alone."""
     held, nothing = model.holding(slice(None), point.x), np.zeros(point.x.size)
     evaluation = model.evaluate(point)
-    for _ in range(LOCAL):
+    for _ in range(GAUSS_NEWTON):
         if not evaluation.found:
             break
         equations = normal_equations(held, evaluation)

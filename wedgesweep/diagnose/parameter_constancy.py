@@ -9,15 +9,13 @@ parameters (Nyblom, 1989).
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+from scipy.linalg import orth
 from scipy.special import chdtrc
 
 from wedgesweep.diagnose.jacobian import accurate_jacobian
 
 if TYPE_CHECKING:
     from wedgesweep.diagnose.model import Fit
-
-# Singular value of the scaled derivatives below which a direction depends on the others.
-DEPENDENT = 1e-9
 
 
 class Projector:
@@ -40,9 +38,7 @@ class Projector:
         )
         priors = self._over_all(model.nuisance_weight, 1.0 / model.uncertain.std)
         matrix = np.concatenate([derivatives, np.diag(priors)])
-        matrix /= np.maximum(np.linalg.norm(matrix, axis=0), 1e-300)
-        u, s, _ = np.linalg.svd(matrix, full_matrices=False)
-        self._basis = u[:, s > DEPENDENT]
+        self._basis = orth(matrix / np.maximum(np.linalg.norm(matrix, axis=0), 1e-300))
         evaluation = fit.evaluation
         pulls = self._over_all(evaluation.nuisance_prior, evaluation.uncertain_prior)
         self.misfit = self._project(evaluation.residual, pulls)

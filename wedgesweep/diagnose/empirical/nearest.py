@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from wedgesweep.diagnose.cross_validation import RESAMPLED
 from wedgesweep.diagnose.empirical.force_map import ForceMap
 
 Form = Callable[[np.ndarray, np.ndarray], np.ndarray]
@@ -27,8 +28,6 @@ FORMS: dict[str, Form] = {
     "damping that grows with travel": lambda z, v: v * z**2,
     "spring whose stiffness depends on speed": lambda z, v: z * np.abs(v),
 }
-# Forces that the uncertainty allows, of which shares are taken.
-DRAWS = 200
 # Shares below this are those of anything that is smooth.
 LEAST_SHARE = 0.1
 
@@ -47,13 +46,13 @@ def nearest(found: ForceMap) -> list[Nearest]:
     known = np.where(found.measured, found.density, 0.0) / found.std**2
     weight = np.sqrt(known / known.max()).ravel()
     values, vectors = np.linalg.eigh(found.covariance)
-    draws = np.random.default_rng(0).standard_normal((DRAWS, len(values)))
+    draws = np.random.default_rng(0).standard_normal((RESAMPLED, len(values)))
     about = draws * np.sqrt(np.maximum(values, 0.0)) @ vectors.T
     forces = weight * np.concatenate([found.force.ravel()[None], found.force.ravel() + about])
     forces = _without(forces, weight)
     scatter = forces[1:] - forces[0]
     # Errors add their own power to that of the force; a draw has those of the estimate, and its own.
-    errors = np.r_[1.0, np.full(DRAWS, 2.0)]
+    errors = np.r_[1.0, np.full(RESAMPLED, 2.0)]
     power = (forces**2).sum(axis=1) - errors * (scatter**2).sum(axis=1).mean()
     rows = []
     for name, form in FORMS.items():

@@ -39,18 +39,16 @@ def of_force(own: "Recording", model: np.ndarray) -> NoiseSpectrum:
 
     ``model`` (n,): the force of a model along the motion.
     """
-    assert own.passed_on is not None
     clear = _clear(own, own.passed_on[0] + own.white**2)
     columns = own.low_pass(_functions(own.motion, model))[:, own.places].T
     whole = np.zeros(own.force.size)
     whole[clear] = _left(columns[clear], own.force[clear])
-    # Samples that are left out carry their share of the power.
-    share, passed_on = float(clear.mean()), own.passed_on
 
     def power(frequency: np.ndarray) -> np.ndarray:
-        return motion_noise.power(passed_on, clear, frequency) + own.white**2
+        return motion_noise.power(own.passed_on, clear, frequency) + own.white**2
 
-    found = of_noise([whole / np.sqrt(share)], FROM_MOTION, power)
+    # Samples that are left out carry their share of the power.
+    found = of_noise([whole / np.sqrt(clear.mean())], FROM_MOTION, power)
     return replace(found, white=found.white + own.white**2)
 
 

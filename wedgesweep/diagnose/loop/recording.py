@@ -71,17 +71,17 @@ class Recording:
     force: np.ndarray
     known: np.ndarray
     blocks: tuple[slice, ...]
+    passed_on: np.ndarray
     white: float = 0.0
     differences: tuple[np.ndarray, ...] = ()
     spectrum: NoiseSpectrum = NO_NOISE
-    passed_on: np.ndarray | None = None
     error_of_start: np.ndarray | None = None
     noise_as_stated: float = 0.0
 
     @property
     def noise(self) -> float:
         """Standard deviation (N) of a compared force."""
-        own = self._passed_on[0][self.known]
+        own = self.passed_on[0][self.known]
         return float(np.sqrt(self.spectrum.covariance(np.zeros(1, int))[0] + own.mean()))
 
     @property
@@ -89,14 +89,10 @@ class Recording:
         """Noise over the rms of the force, both where friction is known."""
         return self.noise / float(self.force[self.known].std())
 
-    @property
-    def _passed_on(self) -> np.ndarray:
-        return np.zeros((1, self.places.size)) if self.passed_on is None else self.passed_on
-
     def _covariance(self, rows: np.ndarray) -> np.ndarray:
         """Covariance (N^2) of some compared forces (r,) with one another, (r, r)."""
         distance = np.abs(rows[:, None] - rows)
-        found = self.spectrum.covariance(distance) + motion_noise.between(self._passed_on, rows)
+        found = self.spectrum.covariance(distance) + motion_noise.between(self.passed_on, rows)
         if self.error_of_start is None:
             return found
         return found + np.outer(self.error_of_start[rows], self.error_of_start[rows])
@@ -244,10 +240,10 @@ def recording(test: TestRecord, model: Config, law: str, differences: Sequence[n
     blocks = _blocks(own.velocity[places])
     white = low_pass.noise(white_noise(continuous(force)))
     left = tuple(low_pass(each)[ends : -ends : low_pass.stride] for each in differences)
+    exact = np.zeros((1, places.size))
     found = Recording(
-        test.name, model, law, low_pass, own, noise, places, compared, known, blocks, white, left
-    )
-    found = found.renewed({}, np.zeros(len(blocks)))
+        test.name, model, law, low_pass, own, noise, places, compared, known, blocks, exact, white, left
+    ).renewed({}, np.zeros(len(blocks)))
     if found.noise_share > 1.0:
         problem = f"its noise is {100.0 * found.noise_share:.0f} % of the force, so that it shows nothing"
         raise InputError([f"{problem}; measure a larger force, lower lowpass_hz, or correct the columns"])

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from wedgesweep.diagnose.cross_validation import GAUSS_NEWTON
 from wedgesweep.diagnose.evaluation import Evaluation, Point
 from wedgesweep.diagnose.fit_data import FitData
 from wedgesweep.diagnose.jacobian import accurate_jacobian
@@ -20,8 +21,6 @@ PREDICTED = 0.5
 WIDEST = 10.0
 # A mass sticks if the power of its motion is less than this many times that of its noise.
 MOVES = 10.0
-# Gauss-Newton steps of a test that is looked at closely.
-STEPS = 4
 # Standard deviations of the noise that a free nuisance parameter may take up.
 FREE = 1e4
 
@@ -108,7 +107,7 @@ def _adapted(data: FitData, one: Fit, other: Fit) -> float:
     """
     first, second = (_Moved(np.zeros(fit.x.size), _unmoved(data, fit)) for fit in (one, other))
     found = np.inf
-    for _ in range(STEPS):
+    for _ in range(GAUSS_NEWTON):
         mine, its = _predicted(one, data, first), _predicted(other, data, second)
         if not (mine.moves & its.moves).all():
             break

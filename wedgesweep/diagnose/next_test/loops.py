@@ -112,6 +112,7 @@ def _recording(
         force=np.zeros(places.size),
         known=~at_rest(motion, low_pass)[places],
         blocks=(slice(0, places.size),),
+        passed_on=np.zeros((1, places.size)),
     )
     force = np.nan_to_num(empty.simulated([dict(values)], np.zeros((1, 1)))[0])
     rms = float(force[empty.known].std()) if empty.known.any() else 0.0

@@ -16,6 +16,7 @@ from wedgesweep.diagnose.steady.column_load import CHANNEL
 from wedgesweep.diagnose.steady.harmonic_data import HarmonicData
 from wedgesweep.diagnose.steady.spectra import Spectrum
 from wedgesweep.diagnose.steady.tone import TONE
+from wedgesweep.diagnose.transient.cutting import HARMONICS, WINDOW
 from wedgesweep.effects import acting
 from wedgesweep.measured.declarations import STEADY
 from wedgesweep.natural_units import ACCELERATION, FREQUENCY
@@ -28,8 +29,6 @@ FREQUENCIES = np.array([4.0, 6.0, 8.0, 10.0, 12.0, 14.0, 16.0, 20.0, 24.0, 28.0,
 ACCELERATIONS = np.geomspace(0.3, 4.0, 8)
 # How well the amplitude of a new test is taken to be known.
 AMPLITUDE_STD = 0.02
-# Harmonics that are compared, and natural periods of a test, where no steady test was made.
-HARMONICS, PERIODS = 8, 10.0
 
 
 @dataclass(frozen=True)
@@ -60,12 +59,12 @@ def sines(best: Fit, known: Sensors, measured: HarmonicData | None) -> Design:
     acceleration = own.units.ratio(ACCELERATION) * acceleration
     omega = 2.0 * pi * frequency
     amplitude = own.units.mass * acceleration if model.forced else acceleration / omega**2
-    shape = (len(known.spectra), HARMONICS)
+    shape = (len(known.spectra), int(HARMONICS))
     if measured is not None:
         shape = min(measured.shape[0], CHANNEL), measured.shape[1]
     nothing = np.zeros(shape)
     empty = [
-        Spectrum(float(f), PERIODS, 0, 0.0, nothing + 0.0j, nothing + 1.0, 0.0j, nothing[:, :0], ())
+        Spectrum(float(f), WINDOW, 0, 0.0, nothing + 0.0j, nothing + 1.0, 0.0j, nothing[:, :0], ())
         for f in frequency
     ]
     data = SineTests(
@@ -109,4 +108,4 @@ def _measured_noise(data: HarmonicData) -> float:
 
 def _noise(known: Sensors) -> float:
     """Noise of a harmonic over the response, from that of a sample over its rms."""
-    return known.share * sqrt(known.omega / (pi * PERIODS * known.rate))
+    return known.share * sqrt(known.omega / (pi * WINDOW * known.rate))

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from wedgesweep.diagnose.steady.harmonic_fit import BAND
 from wedgesweep.diagnose.steady.spectra import fitted
 
 # Channel of the load among those that are compared, behind displacement and velocity.
@@ -14,8 +15,6 @@ CHANNEL = 2
 # The load jumps where slip turns: samples of a simulated period are that close that the instant of a jump,
 # known within a sample by the velocity, leaves an error below 1e-4 of it in each harmonic.
 SAMPLES_PER_PERIOD = 1024
-# Share of half the sampling rate up to which the load is compared: its amplifier has an anti-aliasing filter.
-PASSED = 0.8
 
 
 class ColumnLoad(NamedTuple):
@@ -43,7 +42,7 @@ def measured(time: np.ndarray, load: np.ndarray, frequency: float, zero_std: flo
     orders = np.arange(1, found.harmonics + 1)
     turn = np.exp(2j * np.pi * frequency * np.outer(orders, time - time[0]))
     mean = float(np.mean(load - (found.mean[0] @ turn).real))
-    kept = orders * frequency < PASSED * 0.5 / found.interval
+    kept = orders * frequency < BAND / found.interval  # its amplifier has an anti-aliasing filter
     variance = found.variance[0]
     # Noise is as strong at the mean as at the fundamental, and half of it is that of a real part.
     of_mean = 0.5 * variance[0] + 2.0 * zero_std**2

@@ -15,7 +15,7 @@ from wedgesweep.diagnose.steady.recorded_input import (
     motion_factor,
     without_noise,
 )
-from wedgesweep.diagnose.steady.spectra import Spectrum, fitted, noise_coherence, spectrum
+from wedgesweep.diagnose.steady.spectra import Spectrum, fitted, spectrum
 from wedgesweep.effects import acting
 from wedgesweep.effects.channel_delay import NAME as DELAY
 from wedgesweep.measured import Measurement, TestRecord
@@ -177,7 +177,7 @@ def _read_test(
     measured, noise = input_harmonics(recorded, quantity)
     displacement, variance = without_noise(measured, noise)
     coherence = np.array(
-        [noise_coherence(test.time, np.array([test.input, each]), frequency) for each in signals]
+        [fitted(test.time, np.array([test.input, each]), frequency).coherence for each in signals]
     )[: len(found.mean)]
     found, conversion = _as_motion(found, named, [share for _, share in motions], displacement)
     # The noise is that of channels and input as recorded, and turns as their harmonics are converted. Of that

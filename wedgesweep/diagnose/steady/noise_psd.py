@@ -4,6 +4,7 @@ No noise model is assumed except that the spectrum is smooth (after Pintelon and
 Identification, 2012, ch. 4).
 """
 
+from math import log
 from typing import NamedTuple
 
 import numpy as np
@@ -12,8 +13,9 @@ import numpy as np
 ORDER = 3
 # A spectral line this many times above the smoothed PSD is not noise (probability 1e-5 in noise).
 OUTLIER = 11.5
-# A coherence is significant if its square times the number of lines exceeds this.
-SIGNIFICANT = 9.0
+# Probability of a false alarm in noise: of a tone, of a response that repeats only every other period, or of
+# a coherence of channels.
+FALSE_ALARM = 1e-4
 
 
 class SmoothPSD:
@@ -108,4 +110,4 @@ def _smoothed(frequency: np.ndarray, power: np.ndarray, redundancy: float) -> Sm
 def _coherence(products: np.ndarray) -> complex:
     """Mean of normalised products (m,) of two channels' noise; 0 if it is not significant."""
     value = complex(products.mean())
-    return value if abs(value) ** 2 * products.size > SIGNIFICANT else 0.0j
+    return value if abs(value) ** 2 * products.size > -log(FALSE_ALARM) else 0.0j

@@ -88,25 +88,20 @@ def without_noise(measured: np.ndarray, variance: np.ndarray) -> tuple[np.ndarra
     return share * measured, np.where(share > 0.0, share * variance, error)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class RecordedInputData(HarmonicData):
     """Harmonics of steady tests whose input was recorded.
 
     ``inputs``: the recorded inputs. ``hidden``: effects that these channels cannot show.
     """
 
-    inputs: InputHarmonics | None = None
+    inputs: InputHarmonics
     hidden: tuple[str, ...] = ()
 
     eliminated = 0
 
-    @property
-    def recorded(self) -> InputHarmonics:
-        assert self.inputs is not None
-        return self.inputs
-
     def subset(self, rows: np.ndarray) -> Self:
-        return replace(super().subset(rows), inputs=self.recorded.of(rows))
+        return replace(super().subset(rows), inputs=self.inputs.of(rows))
 
     def with_undetected(self, effect: str) -> Self:
         return self if effect in self.hidden else super().with_undetected(effect)
@@ -123,7 +118,7 @@ class RecordedInputData(HarmonicData):
         for sensor, number, neutral in SENSORS:
             if sensor in self.hidden:
                 rows[sensor][number] = neutral
-        excitation.set_series(rows, self.recorded.shape)
+        excitation.set_series(rows, self.inputs.shape)
         return rows
 
     def inputs_of(self, scenario: Scenario) -> np.ndarray:
@@ -137,7 +132,7 @@ class RecordedInputData(HarmonicData):
     def _simulate(self, scenarios: Sequence[Scenario], tolerance: float) -> Simulated:
         """Simulated harmonics, less what the error of the gain does to channels that the input converts."""
         done = super()._simulate(scenarios, tolerance)
-        inputs = self.recorded
+        inputs = self.inputs
         channels, orders = done.harmonics.shape[2], inputs.displacement.shape[1]
         from_zero = inputs.displacement * np.exp(-1j * inputs.phase[:, None] * np.arange(1, orders + 1))
         share = inputs.conversion[:, :channels] * from_zero[:, None]
@@ -151,7 +146,7 @@ class RecordedInputData(HarmonicData):
 
     def start_phase(self, simulated: np.ndarray, other: np.ndarray | float = 0.0) -> np.ndarray:
         """Phase (rad) of the input at the first sample, as recorded."""
-        return np.broadcast_to(self.recorded.phase, simulated.shape[:-2]).copy()
+        return np.broadcast_to(self.inputs.phase, simulated.shape[:-2]).copy()
 
     def eliminated_derivatives(self, here: Evaluation) -> np.ndarray:
         return np.zeros((*here.residual.shape, 0))
@@ -164,17 +159,17 @@ class RecordedInputData(HarmonicData):
 
     def covariance(self, scenario: Scenario) -> np.ndarray:
         bare = self.bare()
-        tests, orders = self.recorded.displacement.shape
+        tests, orders = self.inputs.displacement.shape
         here = bare.compare([scenario], TIGHT)[0]
         warm = replace(scenario.point, warm=here.warm)
         width = 2 * self.shape[0] * self.columns
         covariance = np.tile(np.eye(width), (tests, 1, 1))
         shared = self._shared_noise()
         for order in range(orders):
-            std = np.sqrt(0.5 * self.recorded.variance[:, order])
+            std = np.sqrt(0.5 * self.inputs.variance[:, order])
             if not std.any():
                 continue
-            step = np.maximum(std, LEAST_STEP / (order + 1) * self.recorded.amplitude)
+            step = np.maximum(std, LEAST_STEP / (order + 1) * self.inputs.amplitude)
             for part, turn in enumerate((1.0, 1j)):
                 moved = [bare._with_coefficient(order, sign * turn * step) for sign in (1.0, -1.0)]
                 above, below = (each.compare([Scenario(scenario.values, warm)], TIGHT)[0] for each in moved)
@@ -189,15 +184,15 @@ class RecordedInputData(HarmonicData):
 
     def _with_coefficient(self, order: int, change: np.ndarray) -> Self:
         """The data as if a coefficient of the inputs had been recorded with a change (T,) in m."""
-        displacement = self.recorded.displacement.copy()
+        displacement = self.inputs.displacement.copy()
         displacement[:, order] += change
         spectra = []
         for t, spectrum in enumerate(self.spectra):
             mean = spectrum.mean.copy()
             if order < mean.shape[1]:
-                mean[:, order] += self.recorded.conversion[t, : len(mean), order] * change[t]
+                mean[:, order] += self.inputs.conversion[t, : len(mean), order] * change[t]
             spectra.append(replace(spectrum, mean=mean))
-        inputs = self.recorded._replace(displacement=displacement)
+        inputs = self.inputs._replace(displacement=displacement)
         return replace(self, inputs=inputs, spectra=tuple(spectra), amplitude=inputs.amplitude)
 
     def _shared_noise(self) -> np.ndarray:
@@ -206,9 +201,9 @@ class RecordedInputData(HarmonicData):
         Real and imaginary part (axis 1) are over their standard deviation.
         """
         channels, columns = self.shape[0], self.columns
-        found = np.zeros((self.recorded.shared.shape[0], 2, 2, channels, columns, columns))
+        found = np.zeros((self.inputs.shared.shape[0], 2, 2, channels, columns, columns))
         full = np.zeros((found.shape[0], channels, columns), complex)
-        given = self.recorded.shared[:, :channels, :columns]
+        given = self.inputs.shared[:, :channels, :columns]
         full[:, : given.shape[1], : given.shape[2]] = given
         # Of the noise alone; model errors have nothing to do with the input.
         scale = np.sqrt(np.where(self.weight > 0.0, self._noise, 0.0))

@@ -21,7 +21,7 @@ from wedgesweep.diagnose.steady.harmonic_fit import (
     phasors_of,
     resolvable,
 )
-from wedgesweep.diagnose.steady.noise_psd import SmoothPSD
+from wedgesweep.diagnose.steady.noise_psd import FALSE_ALARM, SmoothPSD
 from wedgesweep.measured.cycles import SEEN
 
 # Harmonics that are simulated, and whose aliases beyond half the sampling rate count.
@@ -32,8 +32,6 @@ PARTS = 8
 LEAST_REMAINING = 0.2
 # Two channels whose noise is more coherent than this are the same signal.
 SAME_SIGNAL = 0.98
-# Probability of a false alarm in noise: of a tone, or of a response that repeats only every other period.
-FALSE_ALARM = 1e-4
 
 
 class AliasMap(NamedTuple):
@@ -228,15 +226,6 @@ def fitted(
         masked_harmonic=design.masked_harmonic,
         alias_map=_alias_map(time, frequency, design, inverse),
     )
-
-
-def noise_coherence(time: np.ndarray, channels: np.ndarray, frequency: float) -> complex:
-    """Coherence of the noise of two channels (2, n): of the second with the first."""
-    time = time - time[0]
-    design = design_matrix(time, time[-1] / (time.size - 1), frequency, None, False)
-    inverse = np.linalg.inv(design.matrix.T @ design.matrix)
-    residual = channels - (design.matrix @ (inverse @ (design.matrix.T @ channels.T))).T
-    return noise_psd.levels(residual, _noise_lines(time, frequency, design, inverse, False))[1]
 
 
 def _noise_lines(

@@ -9,7 +9,8 @@ from scipy.optimize import minimize_scalar
 from scipy.special import gammaln, logsumexp, xlogy
 
 from wedgesweep.diagnose.steady.harmonic_fit import BAND, REMOVED, regressors, resolvable, within_band
-from wedgesweep.diagnose.steady.spectra import FALSE_ALARM, Spectrum
+from wedgesweep.diagnose.steady.noise_psd import FALSE_ALARM
+from wedgesweep.diagnose.steady.spectra import Spectrum
 
 # The effect that makes one, and its number that the records tell directly.
 TONE = "stray_vibration"

@@ -4,7 +4,7 @@ from math import pi
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.optimize import root_scalar
+from scipy.optimize import newton
 
 from wedgesweep.compiled import compiled
 from wedgesweep.diagnose.model import Fit
@@ -20,8 +20,6 @@ if TYPE_CHECKING:
 
 # A harmonic counts by the share of its square that exceeds this many times its noise.
 ABOVE_NOISE = 4.0
-# First guess at the mean of a motion, over its peak-to-peak.
-FIRST_MEAN = 0.01
 # Effects of sensors.
 SENSOR = tuple(name for name, effect in EFFECTS.items() if effect.family == "sensor")
 # A dwell is where the velocity stays below this share of its peak.
@@ -139,8 +137,7 @@ def _about_mean_position(row: np.ndarray, x: np.ndarray, v: np.ndarray) -> np.nd
         accelerations(small, x + position, v, acceleration)
         return float(acceleration.mean())
 
-    position = root_scalar(mean, x0=0.0, x1=FIRST_MEAN * np.ptp(x), method="secant", maxiter=20).root
-    mean(position)
+    mean(newton(mean, 0.0, maxiter=20, disp=False))
     return acceleration
 
 
