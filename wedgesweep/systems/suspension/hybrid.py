@@ -15,7 +15,7 @@ from wedgesweep.systems.suspension.energy import damping_power, friction_power, 
 from wedgesweep.systems.suspension.faces import column_slip
 from wedgesweep.systems.suspension.filippov import filippov_forces
 from wedgesweep.systems.suspension.modes import VELOCITY, X, held, stuck
-from wedgesweep.systems.suspension.newton import driving_force, forces
+from wedgesweep.systems.suspension.newton import UNDETERMINED, driving_force, forces
 from wedgesweep.systems.suspension.series_slip import follow_series, has_series
 from wedgesweep.systems.suspension.sticking import follow_stuck
 
@@ -104,22 +104,15 @@ def force_of_motion(t, acceleration, y, mode, p):
     return nan if stuck(mode, p) else driving_force(t, acceleration, y, mode, p)
 
 
-@inlined
-def forces_and_power(t, y, mode, p):
-    """Normal forces on column and bolster (N), and the power of friction (W), in a mode that slips."""
-    if held(mode):
-        now, power, _ = filippov_forces(t, y, mode, p)
-        return now.column, now.bolster, power
-    now = forces(t, y, mode, p)
-    return now.column, now.bolster, friction_power(t, y, mode, now, p)
-
-
 @implement(interface.powers, SUSPENSION)
 @inner
 def powers(t, y, mode, p):
     """Power taken and supplied, and the normal forces."""
-    column, bolster, power = nan, nan, 0.0
-    if not stuck(mode, p):
-        column, bolster, power = forces_and_power(t, y, mode, p)
+    now, power = UNDETERMINED, 0.0
+    if held(mode):
+        now, power, _ = filippov_forces(t, y, mode, p)
+    elif not stuck(mode, p):
+        now = forces(t, y, mode, p)
+        power = friction_power(t, y, mode, now, p)
     supplied = supplied_power(excitation.acceleration(t, p), y, p)
-    return power + damping_power(y, p), supplied, column, bolster
+    return power + damping_power(y, p), supplied, now.column, now.bolster

@@ -35,9 +35,8 @@ from wedgesweep.systems.suspension.unilateral.contacts import bolster_gap, bolst
 from wedgesweep.systems.suspension.unilateral.modes import (
     BOLSTER_CLOSES,
     COLUMN_CLOSES,
-    bolster_touches,
     closed,
-    column_touches,
+    is_open,
     resolve,
     rests_in_guide,
     signed_coefficient,
@@ -88,7 +87,7 @@ def opened(mode, p):
 @inlined
 def free(y, p):
     """A closed contact keeps its gap, and a bolster that friction holds its velocity."""
-    column, bolster = not column_touches(y), not bolster_touches(y)
+    column, bolster = is_open(y)
     pinned = p.friction.set_valued != 0 and y[VELOCITY] == 0.0
     pinned = pinned and (guide_friction.acts(p) or not (column or bolster))
     moves = replaced(states.active(p), VELOCITY, not pinned)
@@ -148,18 +147,14 @@ def rate(t, y, mode, p):
         forces = UnilateralForces((0.0, 0.0), both.column, nan, both.bolster, nan, nan)
         return of_closed + (0.0, 0.0, 0.0, 0.0), forces  # noqa: RUF005
     motion, now, guide = _motion_and_reactions(t, y, mode, p)
-    column_rate, column_acceleration, bolster_rate, bolster_acceleration = 0.0, 0.0, 0.0, 0.0
-    if mode.column_sign == 0:
-        column_rate, column_acceleration = y[COLUMN_RATE], motion.gap
-    if mode.bolster_sign == 0:
-        bolster_rate, bolster_acceleration = y[BOLSTER_RATE], bolster_gap(motion, p)
-    of_gaps = column_acceleration, bolster_acceleration
+    column = motion.gap if mode.column_sign == 0 else 0.0
+    bolster = bolster_gap(motion, p) if mode.bolster_sign == 0 else 0.0
     forces = UnilateralForces(
-        of_gaps, now.column, now.column_friction, now.bolster, now.bolster_friction, guide
+        (column, bolster), now.column, now.column_friction, now.bolster, now.bolster_friction, guide
     )
     others = Accelerations(0.0, frame_acceleration(t, motion, y, p))
     own = hooks.rates(velocities(y, p).along, others, mode, y, p)
-    gaps = column_rate, column_acceleration, bolster_rate, bolster_acceleration
+    gaps = y[COLUMN_RATE], column, y[BOLSTER_RATE], bolster
     return (y[VELOCITY], motion.rise) + own + gaps, forces  # noqa: RUF005
 
 
@@ -232,7 +227,7 @@ def all_events(now, t, y, mode, p, out):
 def _time_to_close(gap, rate, acceleration):
     """Time (s) in which a gap closes at a constant acceleration; inf: never.
 
-    The acceleration of a gap that opens just now is no more than rounding errors.
+    A closed gap stays closed; the acceleration of one that opens just now is no more than rounding errors.
     """
     square = rate * rate - 2.0 * gap * acceleration
     if square < 0.0 or (rate >= 0.0 and acceleration >= 0.0) or gap == rate == 0.0:
@@ -246,14 +241,11 @@ def _time_to_close(gap, rate, acceleration):
 @inlined
 def expected_event(now, t, y, mode, p):
     """Time (s) in which an open face would close."""
-    column, bolster = inf, inf
-    if mode.column_sign == 0:
-        gap, speed = y[COLUMN_GAP], y[COLUMN_RATE]
-        column = _time_to_close(gap, speed, now.gap_accelerations[0])
-    if mode.bolster_sign == 0:
-        gap, speed = y[BOLSTER_GAP], y[BOLSTER_RATE]
-        bolster = _time_to_close(gap, speed, now.gap_accelerations[1])
-    return min(column, bolster)
+    column, bolster = now.gap_accelerations
+    return min(
+        _time_to_close(y[COLUMN_GAP], y[COLUMN_RATE], column),
+        _time_to_close(y[BOLSTER_GAP], y[BOLSTER_RATE], bolster),
+    )
 
 
 @implement(interface.event, UNILATERAL)
@@ -271,7 +263,7 @@ def event(place, t, y, mode, p, out):
 @inner
 def initial_mode(t, y, p):
     """Mode in which a run begins, and whether it is unique."""
-    if column_touches(y) and bolster_touches(y):
+    if not (is_open(y)[0] or is_open(y)[1]):
         mode, unique = transitions.initial_mode(t, without_gaps(y), p)
         if unique and stays_closed(without_gaps(y), mode, p):
             return mode, True

@@ -65,15 +65,10 @@ def rests_in_guide(mode, p):
 
 
 @inlined
-def column_touches(y):
-    """Whether the column face is closed, or about to open."""
-    return y[COLUMN_GAP] == 0.0 and y[COLUMN_RATE] == 0.0
-
-
-@inlined
-def bolster_touches(y):
-    """Whether the bolster face is closed, or about to open."""
-    return y[BOLSTER_GAP] == 0.0 and y[BOLSTER_RATE] == 0.0
+def is_open(y):
+    """Whether the column face and the bolster face are open: not closed, and not about to open."""
+    column = y[COLUMN_GAP] != 0.0 or y[COLUMN_RATE] != 0.0
+    return column, y[BOLSTER_GAP] != 0.0 or y[BOLSTER_RATE] != 0.0
 
 
 @inlined
@@ -89,13 +84,13 @@ def slip_branch(slip, nothing, p):
 @inner
 def touching(y, segment, p):
     """Contacts of a state that touch, and their slip branches; ``segment`` of the travel."""
-    column, bolster = column_touches(y), bolster_touches(y)
+    column, bolster = is_open(y)
     motion, nothing = velocities(y, p), STILL * states.scales(p)[VELOCITY]
-    if column and bolster:
+    if not (column or bolster):
         nothing = 0.0 if y[VELOCITY] != 0.0 else nothing
     column_branch = slip_branch(motion.along, nothing, p)
     bolster_branch = slip_branch(bolster_slip(motion, p), nothing, p)
-    guide, signs = slip_branch(y[VELOCITY], 0.0, p), (1 if column else 0, 1 if bolster else 0)
+    guide, signs = slip_branch(y[VELOCITY], 0.0, p), (0 if column else 1, 0 if bolster else 1)
     return ContactMode(column_branch, bolster_branch, guide, 0, signs[0], signs[1], segment, 0)
 
 
@@ -124,9 +119,8 @@ def _faces(y, contact, p):
 @inner
 def _later(t, y, motion, moment, p):
     """State after a moment (s) at constant accelerations of bolster and side frame, and rates of the gaps."""
-    column, column_rate = y[COLUMN_GAP], y[COLUMN_RATE]
-    bolster, bolster_rate = y[BOLSTER_GAP], y[BOLSTER_RATE]
-    gaps = column + moment * column_rate, column_rate, bolster + moment * bolster_rate, bolster_rate
+    column, bolster = y[COLUMN_RATE], y[BOLSTER_RATE]
+    gaps = y[COLUMN_GAP] + moment * column, column, y[BOLSTER_GAP] + moment * bolster, bolster
     later = fixture_resonance.later(y, moment, frame_acceleration(t, motion, y, p), p)
     later = replaced(later, X, y[X] + moment * y[VELOCITY] + 0.5 * moment * moment * motion.rise)
     return with_gaps(replaced(later, VELOCITY, y[VELOCITY] + moment * motion.rise), gaps)
