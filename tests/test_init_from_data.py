@@ -482,6 +482,17 @@ def test_structures_of_an_array_are_runs(tmp_path):
     assert np.array(sizes) == pytest.approx(np.outer((1, 2, 3), (1e-3 * np.ptp(d), np.ptp(f))))
 
 
+def test_a_cell_array_names_the_columns_of_a_matrix_and_their_units(tmp_path):
+    t, d, f = loop()
+    columns = {"label": np.array(["piston", "load"], object), "units": np.array(["cm", "kN"], object)}
+    signals = {"values": np.column_stack([0.1 * d, 1e-3 * f]), **columns}
+    savemat(tmp_path / "one.mat", {"test": {"time": t, "signals": signals}})
+    (test,) = begun(tmp_path, tmp_path / "one.mat").tests
+    assert test.displacement == pytest.approx(1e-3 * d)
+    assert test.force == pytest.approx(f)
+    assert 'column = "test.signals.values[2]", unit = "kN"' in (tmp_path / "measured.toml").read_text()
+
+
 def test_a_time_that_begins_anew_parts_runs(tmp_path):
     """Each is a mass that is held for half a second before it is let go."""
     t, x = decay()

@@ -77,6 +77,23 @@ def write(
     return saved(folder, model, HEAD + PLACE + FORCE + more, "t,x,F", tests)
 
 
+def test_noise_of_an_elastic_friction_damper_in_an_earthquake_is_that_of_its_force(tmp_path):
+    """Friction builds up after a reversal, and strokes that do not slip keep what was built up before."""
+    rng, rate, samples, std = np.random.default_rng(4), 100.0, 2000, 0.15
+    t, frequency = np.arange(samples) / rate, np.fft.rfftfreq(samples, 1.0 / rate)
+    passed = (frequency > 0.3) & (frequency < 2.0)
+    x = np.fft.irfft(passed * np.exp(2j * np.pi * rng.random(frequency.size)), samples)
+    x *= 15.0 / np.abs(x).max()
+    force, built_up = np.empty(samples), 0.0
+    for i, step in enumerate(np.diff(x, prepend=x[0])):
+        force[i] = built_up = np.clip(built_up + 15.0 * step, -28.0, 28.0)
+    noisy = [each + s * rng.standard_normal(samples) for each, s in ((x, 4e-3), (force, std))]
+    model = OSCILLATOR.replace("normal_force_N = 10.0", "normal_force_N = 0.0")
+    path = saved(tmp_path, model, HEAD + PLACE + FORCE, "t,x,F", {"one": ((t, *noisy), LOOP)})
+    (found,) = loop_data(read(path)).recordings
+    assert 1.0 < found.noise / found.low_pass.noise(std) < 3.0
+
+
 def test_noise_of_a_filter_and_of_derivatives():
     rng = np.random.default_rng(0)
     rate, std = 1000.0, 1e-6

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import nnls
 
+from wedgesweep.diagnose import sliders
 from wedgesweep.diagnose.noise_spectrum import white_noise
 from wedgesweep.diagnose.smoothing import LOWEST, LowPass, derivative
 from wedgesweep.measured import Measurement, TestRecord, contact_load
@@ -23,9 +24,8 @@ LINES = 1e-3
 UNSEEN = 1e-6
 # Correlation from which acceleration and place are one motion at one frequency.
 ALIKE = 0.99
-# Share of the largest velocity beyond which friction has its sign, and shares of a stroke after which it may
-# be built up where a joint is elastic (a convention).
-MOVING, BUILT_UP = 0.1, (0.25, 0.5)
+# Share of the largest velocity beyond which friction has its sign (a convention).
+MOVING = 0.1
 # The same share where motions are known at a few frequencies only, which smears reversals: of a mass that an
 # earthquake shakes the spring is then right to 1 and to 16 %, with 0.1 it is 30 % too soft.
 CLEAR = 0.3
@@ -126,34 +126,36 @@ def _end(signal: np.ndarray) -> float:
 class _Moving(NamedTuple):
     """Samples of a test in which its mass moves.
 
-    ``parts`` (n, 4): acceleration, velocity, restoring force over its factor (or 0) and direction; ``force``
-    (n,); ``share`` (n,): of the stroke that is done.
+    ``parts`` (n, 3 + k): acceleration, velocity, restoring force over its factor (or 0), and friction over
+    its largest: the direction, or the forces of springs with sliders; ``force`` (n,).
     """
 
     parts: np.ndarray
     force: np.ndarray
-    share: np.ndarray
-
-    def after(self, share: float) -> "_Moving":
-        """Those of them that have a share of their stroke behind them; all of them if none has."""
-        built_up = self.share >= share
-        return _Moving(*(each[built_up] for each in self)) if built_up.any() else self
 
 
 def _under_force(tests: Sequence[TestRecord], restoring: Restoring) -> tuple[float, Numbers]:
     """Share of the force that is left, and numbers by its parts: one is velocity's sign times a stated load.
 
     Joints are elastic before they slip: after a reversal friction builds up over some of the stroke, which
-    looks like damping. What comes later in a stroke counts alone if a linear law explains it clearly better,
-    or friction differs from test to test if that does; of several such laws that with least damping counts,
-    as effects can add a damper but take none away. At one speed friction of each test may be all there is.
+    looks like damping. Springs with sliders take the place of its sign if they explain the force clearly
+    better, or friction differs from test to test if that does; of several such laws that with least damping
+    counts, as effects can add a damper but take none away. At one speed friction of each test may be all
+    there is.
     """
     loads = [test.model.get(contact_load.KEY, 0.0) for test in tests]
     loaded = min(loads) > 0.0
     factors = loads if loaded else [1.0] * len(tests)
     moving = [_moving(test, factor, restoring) for test, factor in zip(tests, factors, strict=True)]
     all_of_it = _explained(moving)
-    others = [_explained([each.after(share) for each in moving]) for share in BUILT_UP]
+    others = []
+    places = [test.displacement for test in tests if test.displacement is not None]
+    if len(places) == len(tests):
+        half = 0.5 * max(float(np.ptp(place)) for place in places)
+        elastic = [
+            _moving(test, factor, restoring, half) for test, factor in zip(tests, factors, strict=True)
+        ]
+        others.append(_explained(elastic))
     if not loaded:
         damped, undamped = (_explained(each, apart=True) for each in (moving, [_undamped(m) for m in moving]))
         others.append(damped if damped[0] < CLEARLY * undamped[0] else undamped)
@@ -192,7 +194,7 @@ def _explained(tests: Sequence[_Moving], apart: bool = False) -> tuple[float, Nu
     left = float(np.std(force - design @ found)) / max(scatter, 1e-300)
     found[found * size < LEAST * scatter] = 0.0
     mass, damping, spring = found[:3].tolist()
-    unseen, friction = ("mass",) if mass == 0.0 else (), float(found[3:].mean())
+    unseen, friction = ("mass",) if mass == 0.0 else (), float(found[3:].mean() if apart else found[3:].sum())
     return left, Numbers(mass or UNSEEN * scatter / float(size[0]), spring, damping, friction, unseen)
 
 
@@ -211,10 +213,11 @@ def _not_negative(design: np.ndarray, force: np.ndarray) -> np.ndarray:
     return min(fits, key=lambda fit: fit[0])[1]
 
 
-def _moving(test: TestRecord, load: float, restoring: Restoring) -> _Moving:
+def _moving(test: TestRecord, load: float, restoring: Restoring, half_range: float = 0.0) -> _Moving:
     """The samples of a test in which friction has its sign, which is multiplied by a load.
 
-    A free motion is about where it ends, and its force is 0.
+    A free motion is about where it ends, and its force is 0. With half the range (m) of the largest motion
+    friction is that of springs with sliders, once it does not depend on the start.
     """
     rate = test.sampling_rate
     force, zero = test.force if test.force is not None else test.input, 0.0
@@ -238,9 +241,13 @@ def _moving(test: TestRecord, load: float, restoring: Restoring) -> _Moving:
         assert test.acceleration is not None
         acceleration = low_pass(test.acceleration)
         velocity, place = (_integral(test.acceleration, rate, order) for order in (1, 2))
-    direction = load * low_pass(np.sign(velocity))
-    parts = np.column_stack([acceleration, velocity, restoring(place), direction])
-    every = _Moving(*(each[ends] for each in (parts, low_pass(force), _share_of_stroke(velocity))))
+    friction, counted = np.sign(velocity)[None], np.ones(force.size, bool)
+    if half_range:
+        assert test.displacement is not None
+        friction, known = (each(test.displacement, half_range) for each in (sliders.forces, sliders.known))
+        counted = known if known.any() else counted
+    parts = np.column_stack([acceleration, velocity, restoring(place), *(load * low_pass(friction))])
+    every = _Moving(*(each[ends][counted[ends]] for each in (parts, low_pass(force))))
     speed = np.abs(every.parts[:, 1])
     return _Moving(*(each[speed >= MOVING * speed.max()] for each in every))
 
@@ -250,15 +257,6 @@ def _travelled(velocity: np.ndarray, rate: float) -> np.ndarray:
     travelled, samples = np.cumsum(velocity) / rate, np.arange(velocity.size)
     later = samples >= velocity.size // 2
     return np.asarray(travelled - np.polynomial.Polynomial.fit(samples[later], travelled[later], 1)(samples))
-
-
-def _share_of_stroke(velocity: np.ndarray) -> np.ndarray:
-    """Share of its stroke, from reversal to reversal, that each sample of a velocity (n,) has behind it."""
-    path = np.cumsum(np.abs(velocity))
-    reversals = np.flatnonzero(np.diff(np.sign(velocity)))
-    edges = np.r_[0.0, path[reversals], path[-1]]
-    stroke = np.searchsorted(reversals, np.arange(velocity.size))
-    return (path - edges[stroke]) / np.maximum(np.diff(edges), 1e-300)[stroke]
 
 
 def _low_pass(test: TestRecord) -> LowPass:

@@ -10,7 +10,7 @@ import numpy as np
 
 from wedgesweep.processes import apart
 from wedgesweep.readers import hdf5
-from wedgesweep.readers.table import Channel, Wanted, unit_and_name
+from wedgesweep.readers.table import Channel, Wanted, matrix_of, unit_and_name
 
 HDF5_MARK = b"\x89HDF\r\n\x1a\n"
 # A v7.3 file of MATLAB is HDF5 behind a header of this length.
@@ -111,16 +111,26 @@ def _matlab_5(file: Path, wanted: Wanted) -> dict[str, Channel | None]:
 def _fields(variables: Mapping[str, Any], path: str = "") -> Iterator[tuple[str, Channel]]:
     """Variables; fields of structs among them as struct.field, of arrays of structs as struct(2).field.
 
-    Beside the samples a recorder's struct holds the name of a channel and its unit.
+    Beside the samples a recorder's struct holds the name of a channel and its unit, or those of all columns.
     """
-    unit, label = unit_and_name({k: str(v[0]) for k, v in variables.items() if path and _is_word(v)})
+    words = {key: texts for key, value in variables.items() if path and (texts := _texts(value))}
+    unit, label = unit_and_name({key: texts[0] for key, texts in words.items() if len(texts) == 1})
     for name, value in variables.items():
-        yield path + name, Channel(value, unit, label=label)
+        columns = matrix_of(np.asarray(value)).T
+        named = {key: texts for key, texts in words.items() if 1 < len(texts) == len(columns) < columns.size}
+        for i, column in enumerate(columns if named else ()):
+            of_column = unit_and_name({key: texts[i] for key, texts in named.items()})
+            yield f"{path}{name}[{i + 1}]", Channel(column, of_column[0], label=of_column[1])
+        if not named:
+            yield path + name, Channel(value, unit, label=label)
         if isinstance(value, np.ndarray) and value.dtype.names:
             for number, each in enumerate(value.ravel(), 1):
                 place = f"{path}{name}." if value.size == 1 else f"{path}{name}({number})."
                 yield from _fields({key: each[key] for key in value.dtype.names}, place)
 
 
-def _is_word(value: Any) -> bool:
-    return isinstance(value, np.ndarray) and value.dtype.kind == "U" and value.shape == (1,)
+def _texts(value: Any) -> list[str]:
+    """A text, or those of a cell array; empty for anything else."""
+    cells = value.ravel() if isinstance(value, np.ndarray) and value.dtype.kind == "O" else [value]
+    known = [isinstance(each, np.ndarray) and each.dtype.kind == "U" and each.shape == (1,) for each in cells]
+    return [str(each[0]) for each in cells] if all(known) else []

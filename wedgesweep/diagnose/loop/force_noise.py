@@ -1,9 +1,8 @@
 """Noise of a measured force: what a smooth function of the motion cannot explain.
 
 The function knows no mechanics but the force of the model on trial: it is free in the displacement, in the
-velocity of either sign, in the acceleration, and in the distance since the last reversal, so that it can take
-the shape of any friction. What it leaves is noise, or physics that is none of these; both are told alike, and
-the spectrum is that of both.
+velocity of either sign, in the acceleration and in springs with sliders (sliders.py). What it leaves is
+noise, or physics that is none of these; both are told alike, and the spectrum is that of both.
 """
 
 from dataclasses import replace
@@ -11,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from wedgesweep.diagnose import sliders
 from wedgesweep.diagnose.loop import motion_noise
 from wedgesweep.diagnose.noise_spectrum import NoiseSpectrum, of_noise
 from wedgesweep.diagnose.smoothing import Motion
@@ -20,9 +20,11 @@ if TYPE_CHECKING:
     from wedgesweep.diagnose.loop.recording import Recording
 
 FROM_MOTION = "what no smooth function of the motion explains"
-# Knots over the displacement and over the velocity, and distances since a reversal over which friction may
-# build up, over the range of the motion.
-PLACES, SPEEDS, DISTANCES = 13, 7, (0.003, 0.01, 0.03, 0.1, 0.3)
+# Knots over the displacement and over the velocity.
+PLACES, SPEEDS = 13, 7
+# Each so many of the sliders count, but all of them where they leave clearly less, as in an earthquake: under
+# simple motions they would only make the estimate of the noise less certain.
+COARSE, CLEARLY = 8, 0.5
 # Singular value of the functions, over the largest one, below which some of them depend on the others.
 DEPENDENT = 1e-6
 # Samples for each function, below which some of them are left out.
@@ -40,9 +42,11 @@ def of_force(own: "Recording", model: np.ndarray) -> NoiseSpectrum:
     ``model`` (n,): the force of a model along the motion.
     """
     clear = _clear(own, own.passed_on[0] + own.white**2)
-    columns = own.low_pass(_functions(own.motion, model))[:, own.places].T
+    functions = (_functions(own.motion, model, every) for every in (COARSE, 1))
+    columns = (own.low_pass(each)[:, own.places].T for each in functions)
+    few, all_of_them = (_left(each[clear], own.force[clear]) for each in columns)
     whole = np.zeros(own.force.size)
-    whole[clear] = _left(columns[clear], own.force[clear])
+    whole[clear] = all_of_them if all_of_them.std() < CLEARLY * few.std() else few
 
     def power(frequency: np.ndarray) -> np.ndarray:
         return motion_noise.power(own.passed_on, clear, frequency) + own.white**2
@@ -53,8 +57,14 @@ def of_force(own: "Recording", model: np.ndarray) -> NoiseSpectrum:
 
 
 def _clear(own: "Recording", variance: np.ndarray) -> np.ndarray:
-    """Samples (k,), of some variance (k,), that are far from reversals, unless few are left then."""
+    """Samples (k,), of some variance (k,), that are far from reversals, unless few are left then.
+
+    Unless few are left, either, they begin when every slider has slipped, whatever it was at the start.
+    """
     quiet = own.known & (variance <= NEAR * np.median(variance[own.known]))
+    x = _scaled(own.motion.displacement)
+    later = quiet & sliders.known(x, 1.0)[own.places]
+    quiet = later if later.sum() >= ENOUGH_LEFT * quiet.sum() else quiet
     turns = np.diff(np.sign(own.motion.velocity[own.places]), append=0.0) != 0.0
     far = quiet & (np.convolve(turns, np.ones(2 * FARTHER + 1), mode="same") < 0.5)
     return far if far.sum() >= ENOUGH_LEFT * quiet.sum() else quiet
@@ -68,19 +78,20 @@ def _left(columns: np.ndarray, force: np.ndarray) -> np.ndarray:
     return (force - columns @ factors) * np.sqrt(force.size / (force.size - rank))
 
 
-def _functions(motion: Motion, model: np.ndarray) -> np.ndarray:
-    """Functions of the motion, (k, n), the most important ones first; jumps count for their share."""
+def _functions(motion: Motion, model: np.ndarray, every: int) -> np.ndarray:
+    """Functions of the motion, (k, n), the most important ones first; jumps count for their share.
+
+    ``every``: which sliders are among them, each or each so many.
+    """
     x, a = _scaled(motion.displacement), _scaled(motion.acceleration)
     v = motion.velocity / np.abs(motion.velocity).max()
-    sign, since = np.sign(v), _since_reversal(motion)
+    sign = np.sign(v)
     simple = [np.ones(x.size), model, sign, v, x, sign * x, a, np.linspace(-1.0, 1.0, x.size)]
-    history = [sign * np.exp(-since / distance) for distance in DISTANCES]
     both = [*_hats(x, PLACES), *_hats(np.abs(v), SPEEDS)]
-    found = np.array([*simple, *history, *both, *(each * sign for each in both)])
-    turns = reversals(motion.velocity)
-    for row in found:
+    smooth, turns = [*both, *(each * sign for each in both)], reversals(motion.velocity)
+    for row in (*simple, *smooth):
         share_jumps(row, turns)
-    return found
+    return np.array([*simple, *sliders.forces(x, 1.0)[::every], *smooth])
 
 
 def _scaled(values: np.ndarray) -> np.ndarray:
@@ -94,11 +105,3 @@ def _hats(values: np.ndarray, knots: int) -> list[np.ndarray]:
     at = np.quantile(values, np.linspace(0.0, 1.0, knots))
     at = np.unique(at)
     return [np.interp(values, at, row) for row in np.eye(at.size)]
-
-
-def _since_reversal(motion: Motion) -> np.ndarray:
-    """Distance (n,) since the last reversal over the range of the motion."""
-    x, sign = motion.displacement, np.sign(motion.velocity)
-    turns = np.r_[0, np.flatnonzero(np.diff(sign) != 0.0) + 1]
-    last = turns[np.searchsorted(turns, np.arange(x.size), side="right") - 1]
-    return np.abs(x - x[last]) / max(float(np.ptp(x)), 1e-300)
