@@ -154,7 +154,7 @@ def test_random_cases_are_bilateral_until_a_contact_opens_and_themselves_after_t
     assert min(closed, opened) > (30 if kind == "plain" else 3)
 
 
-@pytest.mark.acceptance
+@pytest.mark.few(1)
 @pytest.mark.parametrize("law", LAW_NAMES)
 def test_cases_that_could_lock_are_followed_alike_and_lock_alike(law):
     generator, followed, opened = np.random.default_rng(5), 0, 0

@@ -217,7 +217,8 @@ def _moving(test: TestRecord, load: float, restoring: Restoring, half_range: flo
     """The samples of a test in which friction has its sign, which is multiplied by a load.
 
     A free motion is about where it ends, and its force is 0. With half the range (m) of the largest motion
-    friction is that of springs with sliders, once it does not depend on the start.
+    friction is that of springs with sliders, from where on it does not depend on the start, if that is most
+    of the test.
     """
     rate = test.sampling_rate
     force, zero = test.force if test.force is not None else test.input, 0.0
@@ -245,7 +246,7 @@ def _moving(test: TestRecord, load: float, restoring: Restoring, half_range: flo
     if half_range:
         assert test.displacement is not None
         friction, known = (each(test.displacement, half_range) for each in (sliders.forces, sliders.known))
-        counted = known if known.any() else counted
+        counted = known if known[ends].mean() > 0.5 else counted
     parts = np.column_stack([acceleration, velocity, restoring(place), *(load * low_pass(friction))])
     every = _Moving(*(each[ends][counted[ends]] for each in (parts, low_pass(force))))
     speed = np.abs(every.parts[:, 1])
