@@ -62,6 +62,7 @@ def mild(name):
         "guide_friction": {"force": 0.3},
         "end_stop": {"clearance": 2e-4},
         "friction_level": {"scale": 0.9},
+        "damping_level": {"scale": 0.9},
         "input_distortion": {"second": 0.05, "third": 0.05},
         "stray_vibration": {"acceleration": 0.5, "frequency": 37.0},
         "fixture_resonance": {"frequency": 40.0},

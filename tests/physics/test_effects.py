@@ -49,7 +49,7 @@ def test_the_declared_order_is_that_of_the_families():
         "excitation",
         "sensor",
     )
-    assert len(EFFECTS) == 37
+    assert len(EFFECTS) == 38
 
 
 @pytest.mark.parametrize("name", [name for name in OF_SUSPENSION if EFFECTS[name].searched])
