@@ -83,8 +83,9 @@ def test_noise_of_an_elastic_friction_damper_in_an_earthquake_is_that_of_its_for
     t, frequency = np.arange(samples) / rate, np.fft.rfftfreq(samples, 1.0 / rate)
     passed = (frequency > 0.3) & (frequency < 2.0)
     x = np.fft.irfft(passed * np.exp(2j * np.pi * rng.random(frequency.size)), samples)
+    x *= np.minimum(t / 4.0, 1.0)
     x *= 15.0 / np.abs(x).max()
-    force, built_up = np.empty(samples), 0.0
+    force, built_up = np.empty(samples), -28.0  # left over from before
     for i, step in enumerate(np.diff(x, prepend=x[0])):
         force[i] = built_up = np.clip(built_up + 15.0 * step, -28.0, 28.0)
     noisy = [each + s * rng.standard_normal(samples) for each, s in ((x, 4e-3), (force, std))]
