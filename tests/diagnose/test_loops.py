@@ -77,22 +77,42 @@ def write(
     return saved(folder, model, HEAD + PLACE + FORCE + more, "t,x,F", tests)
 
 
-def test_noise_of_an_elastic_friction_damper_in_an_earthquake_is_that_of_its_force(tmp_path):
-    """Friction builds up after a reversal, and strokes that do not slip keep what was built up before."""
-    rng, rate, samples, std = np.random.default_rng(4), 100.0, 2000, 0.15
+# Force (N) at which a friction damper slips, stiffness (N/mm) in series with it, and noise (N) of its force.
+SLIPS, STIFF, FORCE_NOISE = 28.0, 15.0, 0.15
+
+
+def earthquake(folder, left_over=0.0):
+    """Files of an elastic friction damper in an earthquake; returns the path of measured.toml.
+
+    Strokes that do not slip keep what was built up; ``left_over``: force (N) where the record begins.
+    """
+    rng, rate, samples = np.random.default_rng(4), 100.0, 2000
     t, frequency = np.arange(samples) / rate, np.fft.rfftfreq(samples, 1.0 / rate)
     passed = (frequency > 0.3) & (frequency < 2.0)
     x = np.fft.irfft(passed * np.exp(2j * np.pi * rng.random(frequency.size)), samples)
     x *= np.minimum(t / 4.0, 1.0)
     x *= 15.0 / np.abs(x).max()
-    force, built_up = np.empty(samples), -28.0  # left over from before
+    force, built_up = np.empty(samples), left_over
     for i, step in enumerate(np.diff(x, prepend=x[0])):
-        force[i] = built_up = np.clip(built_up + 15.0 * step, -28.0, 28.0)
-    noisy = [each + s * rng.standard_normal(samples) for each, s in ((x, 4e-3), (force, std))]
-    model = OSCILLATOR.replace("normal_force_N = 10.0", "normal_force_N = 0.0")
-    path = saved(tmp_path, model, HEAD + PLACE + FORCE, "t,x,F", {"one": ((t, *noisy), LOOP)})
-    (found,) = loop_data(read(path)).recordings
-    assert 1.0 < found.noise / found.low_pass.noise(std) < 3.0
+        force[i] = built_up = np.clip(built_up + STIFF * step, -SLIPS, SLIPS)
+    noisy = [each + s * rng.standard_normal(samples) for each, s in ((x, 4e-3), (force, FORCE_NOISE))]
+    model = oscillator(mass_kg=1e-3, spring_N_per_mm=0.0, normal_force_N=0.0)
+    return saved(folder, model, HEAD + PLACE + FORCE, "t,x,F", {"one": ((t, *noisy), LOOP)})
+
+
+def test_noise_of_an_elastic_friction_damper_in_an_earthquake_is_that_of_its_force(tmp_path):
+    (found,) = loop_data(read(earthquake(tmp_path, -SLIPS))).recordings
+    assert 1.0 < found.noise / found.low_pass.noise(FORCE_NOISE) < 3.0
+
+
+@pytest.mark.acceptance
+def test_an_elastic_friction_damper_is_named_in_an_earthquake(tmp_path):
+    others = ("guide_friction", "viscous_damping", "series_compliance")
+    found = diagnosed(earthquake(tmp_path), ("maxwell_presliding", *others))
+    assert (found.verdict, [each["effect"] for each in found.causes]) == ("named", ["maxwell_presliding"])
+    numbers = {key: each["value"] for key, each in found.causes[0]["parameters"].items()}
+    assert numbers["force_N"] == pytest.approx(SLIPS, rel=2e-3)
+    assert numbers["stiffness_N_per_mm"] == pytest.approx(STIFF, rel=5e-3)
 
 
 def test_noise_of_a_filter_and_of_derivatives():
