@@ -5,6 +5,7 @@ velocity of either sign, in the acceleration and in springs with sliders (slider
 noise, or physics that is none of these; both are told alike, and the spectrum is that of both.
 """
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -18,6 +19,9 @@ from wedgesweep.solvers.imposed_motion import reversals, share_jumps
 
 if TYPE_CHECKING:
     from wedgesweep.diagnose.loop.recording import Recording
+
+# Functions (n,) along a motion.
+Rows = Sequence[np.ndarray] | np.ndarray
 
 FROM_MOTION = "what no smooth function of the motion explains"
 # Knots over the displacement and over the velocity.
@@ -42,9 +46,11 @@ def of_force(own: "Recording", model: np.ndarray) -> NoiseSpectrum:
     ``model`` (n,): the force of a model along the motion.
     """
     clear = _clear(own, own.passed_on[0] + own.white**2)
-    functions = (_functions(own.motion, model, every) for every in (COARSE, 1))
-    columns = (own.low_pass(each)[:, own.places].T for each in functions)
-    few, all_of_them = (_left(each[clear], own.force[clear]) for each in columns)
+    filtered = (own.low_pass(np.array(each)) for each in _functions(own.motion, model))
+    simple, built_up, smooth = (each[:, own.places].T[clear] for each in filtered)
+    few, all_of_them = (
+        _left(np.hstack([simple, built_up[:, ::every], smooth]), own.force[clear]) for every in (COARSE, 1)
+    )
     whole = np.zeros(own.force.size)
     whole[clear] = all_of_them if all_of_them.std() < CLEARLY * few.std() else few
 
@@ -78,11 +84,8 @@ def _left(columns: np.ndarray, force: np.ndarray) -> np.ndarray:
     return (force - columns @ factors) * np.sqrt(force.size / (force.size - rank))
 
 
-def _functions(motion: Motion, model: np.ndarray, every: int) -> np.ndarray:
-    """Functions of the motion, (k, n), the most important ones first; jumps count for their share.
-
-    ``every``: which sliders are among them, each or each so many.
-    """
+def _functions(motion: Motion, model: np.ndarray) -> tuple[Rows, Rows, Rows]:
+    """Functions of a motion: simple ones, forces of sliders, smooth ones; jumps count for their share."""
     x, a = _scaled(motion.displacement), _scaled(motion.acceleration)
     v = motion.velocity / np.abs(motion.velocity).max()
     sign = np.sign(v)
@@ -91,7 +94,7 @@ def _functions(motion: Motion, model: np.ndarray, every: int) -> np.ndarray:
     smooth, turns = [*both, *(each * sign for each in both)], reversals(motion.velocity)
     for row in (*simple, *smooth):
         share_jumps(row, turns)
-    return np.array([*simple, *sliders.forces(x, 1.0)[::every], *smooth])
+    return simple, sliders.forces(x, 1.0), smooth
 
 
 def _scaled(values: np.ndarray) -> np.ndarray:
