@@ -36,7 +36,7 @@ NOISE = {
     "and from what two channels do not share. This assumes noise of one shape for a sensor in all tests, "
     "a smooth function of frequency.",
     "what no smooth function of the motion explains": "The noise is what no smooth function of displacement, "
-    "velocity, acceleration and distance from the last reversal explains, which assumes that what is missing "
+    "velocity, acceleration and forces of springs with sliders explains, which assumes that what is missing "
     "in the model is such a function; anything else counts as noise.",
 }
 COMPARED = {
