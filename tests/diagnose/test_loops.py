@@ -106,9 +106,10 @@ def test_noise_of_an_elastic_friction_damper_in_an_earthquake_is_that_of_its_for
 
 
 @pytest.mark.acceptance
-def test_an_elastic_friction_damper_is_named_in_an_earthquake(tmp_path):
+@pytest.mark.parametrize("left_over", [0.0, -SLIPS])
+def test_an_elastic_friction_damper_is_named_in_an_earthquake(tmp_path, left_over):
     others = ("guide_friction", "viscous_damping", "series_compliance")
-    found = diagnosed(earthquake(tmp_path), ("maxwell_presliding", *others))
+    found = diagnosed(earthquake(tmp_path, left_over), ("maxwell_presliding", *others))
     assert (found.verdict, [each["effect"] for each in found.causes]) == ("named", ["maxwell_presliding"])
     numbers = {key: each["value"] for key, each in found.causes[0]["parameters"].items()}
     assert numbers["force_N"] == pytest.approx(SLIPS, rel=2e-3)

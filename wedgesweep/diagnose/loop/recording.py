@@ -48,6 +48,23 @@ NO_NOISE = NoiseSpectrum(0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True, eq=False)
+class StartError:
+    """Error (k,) (N) of compared forces, as nobody knows how far bristles are deflected at the start.
+
+    ``in_proportion``: what one number tells of all of them, in Dahl's model throughout, and as long as no
+    spring's slider slips; ``bent``: beside it, as a slider forgets the start when it slips.
+    """
+
+    in_proportion: np.ndarray
+    bent: np.ndarray
+
+    def covariance(self, rows: np.ndarray) -> np.ndarray:
+        """Covariance (N^2) of some forces (r,), (r, r)."""
+        own = self.in_proportion[rows]
+        return np.outer(own, own) + np.diag(self.bent[rows] ** 2)
+
+
+@dataclass(frozen=True, eq=False)
 class Recording:
     """One test.
 
@@ -56,9 +73,9 @@ class Recording:
     what noise of the motion has ``passed_on`` (L, k), see ``motion_noise.covariance``; ``known`` (k,):
     whether friction is, which it is not where the mass may rest; ``blocks``: slices of the k samples, whole
     cycles each; ``white`` (N): noise of the force at the places as frequencies above the filter show it;
-    ``differences``: what repeats leave of the force at the places; ``error_of_start`` (k,) (N): by bristles
-    whose deflection at the start of the record is not known, None without bristles; ``noise_as_stated`` (N):
-    of a compared force under the base model as stated.
+    ``differences``: what repeats leave of the force at the places; ``error_of_start``: by bristles whose
+    deflection at the start of the record is not known, None without bristles; ``noise_as_stated`` (N): of a
+    compared force under the base model as stated.
     """
 
     name: str
@@ -75,7 +92,7 @@ class Recording:
     white: float = 0.0
     differences: tuple[np.ndarray, ...] = ()
     spectrum: NoiseSpectrum = NO_NOISE
-    error_of_start: np.ndarray | None = None
+    error_of_start: StartError | None = None
     noise_as_stated: float = 0.0
 
     @property
@@ -93,9 +110,7 @@ class Recording:
         """Covariance (N^2) of some compared forces (r,) with one another, (r, r)."""
         distance = np.abs(rows[:, None] - rows)
         found = self.spectrum.covariance(distance) + motion_noise.between(self.passed_on, rows)
-        if self.error_of_start is None:
-            return found
-        return found + np.outer(self.error_of_start[rows], self.error_of_start[rows])
+        return found if self.error_of_start is None else found + self.error_of_start.covariance(rows)
 
     @cached_property
     def decorrelated(self) -> tuple[Decorrelation, ...]:
@@ -131,17 +146,15 @@ class Recording:
         error = self._error_of_start(values, zeros[None])
         return replace(self, passed_on=passed_on, error_of_start=error)
 
-    def _error_of_start(self, values: Values, zeros: np.ndarray) -> np.ndarray | None:
-        """Error (k,) (N) of compared forces by a standard deviation of bristles' deflection at the start.
-
-        None if there are no bristles.
-        """
-        up, down = (
-            self._compared(self._forces([values], zeros, self.motion.parts, deflected))[0]
-            for deflected in (DEFLECTED, -DEFLECTED)
+    def _error_of_start(self, values: Values, zeros: np.ndarray) -> StartError | None:
+        """Error of compared forces by bristles' deflection at the start; None if there are no bristles."""
+        back, half_back, none, half, whole = (
+            np.nan_to_num(self._compared(self._forces([values], zeros, self.motion.parts, deflected))[0])
+            for deflected in (-1.0, -0.5, 0.0, 0.5, 1.0)
         )
-        error = np.nan_to_num(0.5 * (up - down))
-        return error if error.any() else None
+        bent = [whole + none - 2.0 * half, back + none - 2.0 * half_back]
+        error = StartError(DEFLECTED * (half - half_back), np.abs(bent).max(axis=0))
+        return error if error.in_proportion.any() else None
 
     def _derivatives(self, values: Values, zeros: np.ndarray) -> Derivatives:
         """Derivatives of the force of a scenario, over as much as noise changes each part of the motion."""
