@@ -105,6 +105,20 @@ def test_noise_of_an_elastic_friction_damper_in_an_earthquake_is_that_of_its_for
     assert 1.0 < found.noise / found.low_pass.noise(FORCE_NOISE) < 3.0
 
 
+def test_noise_of_the_displacement_reaches_bristles_by_their_stiffness(tmp_path):
+    """Errors of the simulated force are those that noise makes, drawn many times."""
+    values, std = {"presliding": {"length": 5e-3}}, 1e-5
+    light = oscillator(mass_kg=1e-3, spring_N_per_mm=0.0, normal_force_N=10.0)
+    path = write(tmp_path, light, values, ((0.01, 1.1, 6.0),), (std, 0.02))
+    own = loop_data(read(path)).recordings[0]
+    zeros, rng = np.zeros((1, len(own.blocks))), np.random.default_rng(3)
+    told = np.sqrt(own.with_noise_of_motion(values, zeros[0]).passed_on[0])
+    noisy = own.motion.displacement + std * rng.standard_normal((30, own.motion.displacement.size))
+    moved = [replace(own, motion=motion(each, std, own.low_pass)) for each in noisy]
+    found = np.std([each.simulated([values], zeros)[0] for each in moved], axis=0)
+    assert 0.8 < np.median(told / found) < 1.25
+
+
 @pytest.mark.acceptance
 @pytest.mark.parametrize("left_over", [0.0, -SLIPS])
 def test_an_elastic_friction_damper_is_named_in_an_earthquake(tmp_path, left_over):

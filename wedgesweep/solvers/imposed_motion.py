@@ -42,6 +42,7 @@ def forces(
     acceleration: np.ndarray,
     step: float,
     deflected: float = 0.0,
+    ahead: float = 0.0,
 ) -> np.ndarray:
     """Force on the mass along a motion: the mean over each sample where friction changes within it.
 
@@ -58,6 +59,8 @@ def forces(
     deflected : float
         Deflection of bristles at the start, as a share of their largest one; of a damper's spring in series,
         beyond that of a damper that has been moving at the first velocity, as a share of the latter.
+    ahead : float
+        Travel (m) by which bristles are further than the mass at each sample, as if a sensor had lagged.
 
     Returns
     -------
@@ -69,7 +72,7 @@ def forces(
     motion, turns = np.stack([velocity, acceleration]), reversals(velocity)
     for rows, cases in grouped(parameters):
         part = np.empty((rows.size, velocity.size))
-        _follow_all(cases, places[rows], motion, turns, step, deflected, part)
+        _follow_all(cases, places[rows], motion, turns, step, (deflected, ahead), part)
         found[rows] = part
     return found
 
@@ -99,18 +102,19 @@ def share_jumps(force, shares):
 
 
 @compiled
-def _follow_all(cases, places, motion, turns, step, deflected, out):
+def _follow_all(cases, places, motion, turns, step, bristles_are, out):
     for k in range(cases.size):
-        _follow(cases[k], places[k], motion, turns, step, deflected, out[k])
+        _follow(cases[k], places[k], motion, turns, step, bristles_are, out[k])
 
 
 @allocating
-def _follow(p, places, motion, turns, step, deflected, out):
+def _follow(p, places, motion, turns, step, bristles_are, out):
     """Write the forces (k,) of one case.
 
     A force is averaged over its sample if bristles turn over in the interval before or after it. They may do
     so in the interval of a reversal, in the next one, and as long as their deflection changes quickly.
     """
+    deflected, ahead = bristles_are
     shares = np.full(turns.size, nan)
     # Regularised friction does not jump where the velocity reverses.
     jumps = 1.0 if p.friction.set_valued else nan
@@ -119,12 +123,12 @@ def _follow(p, places, motion, turns, step, deflected, out):
     y = already_moving(_first_state(motion[0, 0], deflected, p), deflected, p)
     for i in range(turns.size):
         y, ends = _placed(y, places[i], motion[0, i]), _Ends(places[i : i + 2], motion[:, i : i + 2])
-        out[i] = _force(y, motion[1, i], step, p)
+        out[i] = _force(_ahead(y, ahead, p), motion[1, i], step, p)
         before, reverses = y, not isnan(turns[i])
         turning = bristly and (reverses or going_on)
         soon = bristly and i + 1 < turns.size and not isnan(turns[i + 1])
         if turned or turning or soon:
-            y, early, later = _resolved(y, ends, turns[i], step, p)
+            y, early, later = _resolved(y, ends, turns[i], step, ahead, p)
             if turned or turning:
                 out[i] = early if isnan(late) else 0.5 * (late + early)  # NaN: at the start
             late = later
@@ -136,7 +140,8 @@ def _follow(p, places, motion, turns, step, deflected, out):
         going_on = turning and (reverses or _largest_change(before, y, p) > FAST)
         turned = turning
     last = turns.size
-    out[last] = _force(_placed(y, places[last], motion[0, last]), motion[1, last], step, p)
+    y = _placed(y, places[last], motion[0, last])
+    out[last] = _force(_ahead(y, ahead, p), motion[1, last], step, p)
     share_jumps(out, shares)
 
 
@@ -170,6 +175,18 @@ def _placed(y, displacement, velocity):
 
 
 @inner
+def _ahead(y, travel, p):
+    """The state vector with bristles that have moved on by some travel (m), whichever way the mass moves."""
+    if travel == 0.0 or y[1] == 0.0:
+        return y
+    found, later, shares = y, _moved(y, 0.0, travel / abs(y[1]), p), bristles(p)
+    for place in range(GIVEN, len(y)):
+        if shares[place]:
+            found = replaced(found, place, later[place])
+    return found
+
+
+@inner
 def _has_bristles(p):
     """Whether a contact has bristles."""
     found, shares, acting = False, bristles(p), active(p)
@@ -189,7 +206,7 @@ def _largest_change(before, after, p):
 
 
 @inner
-def _resolved(y, ends, turn, step, p):
+def _resolved(y, ends, turn, step, ahead, p):
     """State after an interval in which bristles turn over, and the mean forces over both halves of it.
 
     ``turn``: share of the interval at which the velocity reverses, or NaN.
@@ -204,7 +221,8 @@ def _resolved(y, ends, turn, step, p):
             acceleration = _between(ends.motion[1], share)
             y = _placed(y, _between(ends.place, share), _between(ends.motion[0], share))
             y = _moved(y, 0.0, 0.5 * part * step, p)
-            force = driving_force(0.0, acceleration, y, initial_mode(0.0, y, p)[0], p)
+            there = _ahead(y, ahead, p)
+            force = driving_force(0.0, acceleration, there, initial_mode(0.0, there, p)[0], p)
             y = _moved(y, 0.0, 0.5 * part * step, p)
             if share < 0.5:
                 early += 2.0 * part * force

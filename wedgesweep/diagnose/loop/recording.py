@@ -157,18 +157,29 @@ class Recording:
         return error if error.in_proportion.any() else None
 
     def _derivatives(self, values: Values, zeros: np.ndarray) -> Derivatives:
-        """Derivatives of the force of a scenario, over as much as noise changes each part of the motion."""
+        """Derivatives of the force of a scenario, over as much as noise changes each part of the motion.
+
+        Bristles follow noise of the displacement, and begin where they reversed, which noise misplaces as
+        much; that of the velocity moves them to and fro.
+        """
         parts = self.motion.parts
         force = np.nan_to_num(self._forces([values], zeros, parts)[0])
+        changes = [
+            max(noise, LEAST_CHANGE * float(np.abs(own).max()))
+            for noise, own in zip(self.motion.noise, parts, strict=True)
+        ]
+        further = self._forces([values], zeros, parts, ahead=changes[0])[0]
+        by_bristles = sqrt(2.0) * np.nan_to_num(further - force) / changes[0] * np.sign(parts[1])
+        to_and_fro = _to_and_fro(parts[1], changes[1]) if by_bristles.any() else 1.0
         found = []
         for order, own in enumerate(parts):
-            change = max(self.motion.noise[order], LEAST_CHANGE * float(np.abs(own).max()))
+            step = changes[order] * (to_and_fro if order == 1 else 1.0)
             above, below = (
-                self._forces([values], zeros, (*parts[:order], own + step, *parts[order + 1 :]))[0]
-                for step in (change, -change)
+                self._forces([values], zeros, (*parts[:order], moved, *parts[order + 1 :]))[0]
+                for moved in (own + step, own - step)
             )
-            found.append(np.nan_to_num((above - below) / (2.0 * change)))
-        return Derivatives((found[0], found[1], found[2]), motion_noise.jumps(force))
+            found.append(np.nan_to_num((above - below) / (2.0 * step)))
+        return Derivatives((found[0] + by_bristles, found[1], found[2]), motion_noise.jumps(force))
 
     def simulated(self, scenarios: list[Values], zeros: np.ndarray) -> np.ndarray:
         """Forces (n, k) under the values of n scenarios; NaN where they are not determined.
@@ -186,10 +197,11 @@ class Recording:
         zeros: np.ndarray,
         parts: tuple[np.ndarray, ...],
         deflected: float = 0.0,
+        ahead: float = 0.0,
     ) -> np.ndarray:
         """Forces (n, N) along a motion of some displacement, velocity and acceleration (N,).
 
-        ``deflected``: see ``imposed_motion.forces``.
+        ``deflected`` and ``ahead``: see ``imposed_motion.forces``.
         """
         rows = np.concatenate(
             [self.model.record_with(merge(self.model.effects, each), self.law, 0.0) for each in scenarios]
@@ -198,7 +210,7 @@ class Recording:
         places = sign * (displacement + zeros[:, self._block])
         step = 1.0 / self.low_pass.rate
         motion = sign * velocity, sign * acceleration
-        return imposed_motion.forces(rows, places, *motion, step, deflected)
+        return imposed_motion.forces(rows, places, *motion, step, deflected, ahead)
 
     @cached_property
     def _block(self) -> np.ndarray:
@@ -271,6 +283,16 @@ def _spread(marked: np.ndarray, reach: int) -> np.ndarray:
 def moving_mass(model: Config, law: str) -> float:
     """Mass (kg) that an imposed motion accelerates."""
     return float(systems.moving_mass(model.record_with(model.effects, law))[0])
+
+
+def _to_and_fro(velocity: np.ndarray, change: float) -> np.ndarray:
+    """Signs (n,) from sample to sample of a change of the velocity (n,), whose mean moves nothing elastic.
+
+    Where the change moves a reversal, it keeps its sign.
+    """
+    before, after = velocity[:-1], velocity[1:]
+    reverses = (before * after <= 0.0) | (np.minimum(np.abs(before), np.abs(after)) <= change)
+    return np.cumprod(np.r_[1.0, np.where(reverses, 1.0, -1.0)])
 
 
 def _sign(model: Config) -> float:
