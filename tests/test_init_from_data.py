@@ -170,7 +170,7 @@ def test_an_acceleration_under_a_force_tells_mass_spring_and_damper(tmp_path):
     assert own["damping"] == pytest.approx(damping, rel=0.1)
 
 
-def pendulum(driven, seed=0):
+def pendulum(driven, seed=0, start=1.2):
     """Time (s), angle (rad) and torque (N m) of a pendulum (0.0125 kg m^2, 0.6 N m), driven or let go."""
     t = np.arange(0.0, 12.0, 0.005)
 
@@ -180,8 +180,8 @@ def pendulum(driven, seed=0):
     def rate(t, y):
         return y[1], (torque(t) - 0.6 * np.sin(y[0]) - 0.02 * np.tanh(y[1] / 0.005)) / 0.0125
 
-    start = (0.0, 0.0) if driven else (1.2, 0.0)
-    angle = solve_ivp(rate, (0.0, t[-1]), start, method="LSODA", t_eval=t, rtol=1e-7, max_step=0.01).y[0]
+    first = (0.0, 0.0) if driven else (start, 0.0)
+    angle = solve_ivp(rate, (0.0, t[-1]), first, method="LSODA", t_eval=t, rtol=1e-7, max_step=0.01).y[0]
     noise = np.random.default_rng(seed).normal(size=(2, t.size))
     return t, angle + 2e-4 * noise[0], torque(t) + 0.002 * noise[1]
 
@@ -196,6 +196,11 @@ def test_what_swings_is_a_pendulum(tmp_path):
         own = begun(tmp_path / name, text(tmp_path / f"{name}.csv", *columns, header=header)).model.oscillator
         assert own["restoring_force"] == "pendulum"
         assert own["spring"] / own["mass"] == pytest.approx(0.6 / 0.0125, rel=0.03)
+    # Steps of an encoder are more noise of the acceleration than what a spring leaves of it.
+    t, coarse, _ = pendulum(driven=False, start=0.9)
+    turned = np.rint(coarse / 2.0 / np.pi * 2048.0) / 2048.0
+    begun(tmp_path, text(tmp_path / "encoder.csv", t[::2], turned[::2], header="t (s),angle (rev)"))
+    assert "restoring_force" in (tmp_path / "model.toml").read_text()
     # A gyroscope alone tells it as well, and no spring that turns.
     for swings, turn in (True, angle), (False, np.exp(-0.1 * t) * np.cos(6.9 * t)):
         rate = np.gradient(turn, t) + 0.01

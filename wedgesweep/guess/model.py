@@ -74,7 +74,7 @@ def numbers(measurement: Measurement) -> Numbers:
     left, found = law(tests, _spring)
     if measurement.model.turns and all({"displacement", "velocity"} & {*test.responses} for test in tests):
         left_by_pendulum, pendulum = law(tests, np.sin)
-        if left_by_pendulum < CLEARLY * left:
+        if left_by_pendulum**2 < CLEARLY * left**2:  # powers, as noise is in both of them
             return replace(pendulum, swings=True)
     return found
 
