@@ -479,6 +479,37 @@ def test_structs_of_a_new_matlab_tell_names_and_units(tmp_path):
     assert (column.group, column.label, column.channel.unit) == ("run", "speed", "1/min")
 
 
+def test_references_of_a_new_matlab_lead_to_texts_and_to_runs(tmp_path):
+    """Cell arrays and arrays of structs: a matrix with the names of its columns, and two runs."""
+    h5py = pytest.importorskip("h5py")
+    with h5py.File(tmp_path / "one.mat", "w") as file:
+
+        def put(path, values, kind):
+            file[path] = values
+            file[path].attrs["MATLAB_class"] = np.bytes_(kind)
+            return file[path].ref
+
+        def refer(path, targets):
+            file[path] = np.array([[each] for each in targets], h5py.ref_dtype)
+
+        put("rec/data", np.arange(60.0).reshape(3, 20), "double")
+        put("rec/nothing", np.zeros(2, "u8"), "double")
+        file["rec/nothing"].attrs["MATLAB_empty"] = 1
+        for path, texts in ("rec/names", ("Time", "x", "Force")), ("rec/units", ("s", "mm", "kN")):
+            letters = [np.array([[ord(letter)] for letter in text], "u2") for text in texts]
+            refer(path, [put(f"#refs#/{path}{i}", each, "char") for i, each in enumerate(letters)])
+            file[path].attrs["MATLAB_class"] = np.bytes_("cell")
+        refer("run/d", [put(f"#refs#/{i}", i + np.arange(20.0)[None], "double") for i in range(2)])
+        letters = [np.array([[ord(letter)] for letter in text], "u2") for text in ("mm", "cm")]
+        refer("run/unit", [put(f"#refs#/unit{i}", each, "char") for i, each in enumerate(letters)])
+    found = readers.read(tmp_path / "one.mat", ["rec/data[3]", "run(2).d"]).channels
+    np.testing.assert_array_equal(found["rec/data[3]"].values, np.arange(40.0, 60.0))
+    np.testing.assert_array_equal(found["run(2).d"].values.ravel(), 1.0 + np.arange(20.0))
+    assert [each.unit for each in found.values()] == ["kN", "cm"]
+    columns = [each.name for each in survey(tmp_path / "one.mat").columns]
+    assert columns == [*(f"rec/data[{i}]" for i in (1, 2, 3)), "run(1).d", "run(2).d"]
+
+
 def test_lists_in_lines_that_some_lines_lack(tmp_path):
     lines = ['{"event": "start"}', *(f'{{"t": {i}, "imu": {{"gyro": [{i}, 1, 2]}}}}' for i in range(9))]
     (tmp_path / "one.jsonl").write_text("\n".join(lines))

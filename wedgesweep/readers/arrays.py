@@ -10,7 +10,7 @@ import numpy as np
 
 from wedgesweep.processes import apart
 from wedgesweep.readers import hdf5
-from wedgesweep.readers.table import Channel, Wanted, matrix_of, unit_and_name
+from wedgesweep.readers.table import Channel, Wanted, matrix_of, texts_of_columns, unit_and_name
 
 HDF5_MARK = b"\x89HDF\r\n\x1a\n"
 # A v7.3 file of MATLAB is HDF5 behind a header of this length.
@@ -116,12 +116,12 @@ def _fields(variables: Mapping[str, Any], path: str = "") -> Iterator[tuple[str,
     words = {key: texts for key, value in variables.items() if path and (texts := _texts(value))}
     unit, label = unit_and_name({key: texts[0] for key, texts in words.items() if len(texts) == 1})
     for name, value in variables.items():
-        columns = matrix_of(np.asarray(value)).T
-        named = {key: texts for key, texts in words.items() if 1 < len(texts) == len(columns) < columns.size}
-        for i, column in enumerate(columns if named else ()):
-            of_column = unit_and_name({key: texts[i] for key, texts in named.items()})
-            yield f"{path}{name}[{i + 1}]", Channel(column, of_column[0], label=of_column[1])
-        if not named:
+        columns = texts_of_columns(words, np.asarray(value)) if words else []
+        for i, each in enumerate(columns):
+            unit_of_column, its_label = unit_and_name(each)
+            column = matrix_of(np.asarray(value))[:, i]
+            yield f"{path}{name}[{i + 1}]", Channel(column, unit_of_column, label=its_label)
+        if not columns:
             yield path + name, Channel(value, unit, label=label)
         if isinstance(value, np.ndarray) and value.dtype.names:
             for number, each in enumerate(value.ravel(), 1):

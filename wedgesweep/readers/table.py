@@ -96,6 +96,13 @@ def unit_and_name(words: Mapping[str, str]) -> tuple[str, str]:
     return unit, name
 
 
+def texts_of_columns(texts: Mapping[str, Sequence[str]], values: np.ndarray) -> list[dict[str, str]]:
+    """For each column of a matrix the texts of lists beside it that have one for each; else empty."""
+    count, size = matrix_of(values).shape[-1], values.size
+    lists = {key: each for key, each in texts.items() if 1 < len(each) == count < size}
+    return [{key: each[i] for key, each in lists.items()} for i in range(count)] if lists else []
+
+
 def seconds_of_dates(values: Sequence[Any]) -> tuple[np.ndarray, dict[int, str]]:
     """Seconds (n,) since midnight of the first day, and faults: of texts, dates or None.
 
