@@ -9,9 +9,16 @@ from scipy.io import savemat
 
 
 def hdf5(path, columns):
-    with pytest.importorskip("h5py").File(path, "w") as file:
+    h5py = pytest.importorskip("h5py")
+    with h5py.File(path, "w") as file:
         for name, values in columns.items():
             file["bench/" + name if path.suffix == ".h5" else name] = values[None]
+        if path.suffix == ".mat":  # a cell array of characters
+            for name in columns:
+                file[f"#refs#/{name}"] = np.array([[ord(letter)] for letter in name], "u2")
+                file[f"#refs#/{name}"].attrs["MATLAB_class"] = np.bytes_("char")
+            file["names"] = np.array([[file[f"#refs#/{name}"].ref] for name in columns], h5py.ref_dtype)
+            file["names"].attrs["MATLAB_class"] = np.bytes_("cell")
 
 
 def parquet(path, columns):
