@@ -20,6 +20,7 @@ EFFECT = Effect(
     branch=NUMERICAL,
     systems=(OSCILLATOR,),
     of_loops=True,
+    contains=("viscous_damping", "directional_damping"),  # where the velocity is large
     meaning="damping that grows less and less with the velocity",
     quantities=(
         Quantity(

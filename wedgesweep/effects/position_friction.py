@@ -26,6 +26,7 @@ EFFECT = Effect(
     systems=(OSCILLATOR,),
     of_loops=True,
     excludes=("series_compliance",),
+    contains=("friction_level",),  # where the wave is long
     meaning="friction that varies along the stroke",
     acts_on=("guide_friction",),
     quantities=(

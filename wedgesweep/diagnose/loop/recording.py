@@ -148,13 +148,17 @@ class Recording:
 
     def _error_of_start(self, values: Values, zeros: np.ndarray) -> StartError | None:
         """Error of compared forces by bristles' deflection at the start; None if there are no bristles."""
-        back, half_back, none, half, whole = (
-            np.nan_to_num(self._compared(self._forces([values], zeros, self.motion.parts, deflected))[0])
-            for deflected in (-1.0, -0.5, 0.0, 0.5, 1.0)
-        )
-        bent = [whole + none - 2.0 * half, back + none - 2.0 * half_back]
-        error = StartError(DEFLECTED * (half - half_back), np.abs(bent).max(axis=0))
-        return error if error.in_proportion.any() else None
+
+        def compared(deflected: float) -> np.ndarray:
+            forces = self._forces([values], zeros, self.motion.parts, deflected)
+            return np.nan_to_num(self._compared(forces)[0])
+
+        half, half_back = compared(0.5), compared(-0.5)
+        if np.array_equal(half, half_back):
+            return None
+        none = compared(0.0)
+        bent = [compared(1.0) + none - 2.0 * half, compared(-1.0) + none - 2.0 * half_back]
+        return StartError(DEFLECTED * (half - half_back), np.abs(bent).max(axis=0))
 
     def _derivatives(self, values: Values, zeros: np.ndarray) -> Derivatives:
         """Derivatives of the force of a scenario, over as much as noise changes each part of the motion.
