@@ -8,6 +8,7 @@ import pytest
 
 from tests.diagnose.synthetic import MODEL, base_of, drawn, next_to_breakaway, searched
 from wedgesweep.diagnose import pairs, stages
+from wedgesweep.diagnose.fit_parameters import Hypothesis
 from wedgesweep.diagnose.least_squares import minimise
 from wedgesweep.diagnose.search import (
     Explained,
@@ -15,6 +16,7 @@ from wedgesweep.diagnose.search import (
     base_fit,
     beside_stated,
     best_of,
+    best_per_value,
     refit_base,
     single_fit,
     single_fits,
@@ -86,6 +88,13 @@ def clean(seed=0, effects=MappingProxyType({}), uncertain=MappingProxyType({"fri
         bench=(FREQUENCIES, 1e-3 * STATED),
         model=MODEL + "[suspension]\ncolumn_angle_deg = -4.0\n",
     )
+
+
+def test_starts_differ_in_the_wavelength_of_a_wave_not_in_the_sign_of_its_amplitude():
+    starts = Hypothesis(("position_friction",)).starts()
+    rated = [SimpleNamespace(point=SimpleNamespace(x=x), chi2=float(i)) for i, x in enumerate(starts)]
+    wavelengths = [each.point.x[2] for each in best_per_value(rated)]
+    assert sorted(wavelengths) == sorted(set(starts[:, 2].tolist()))
 
 
 @pytest.mark.few(1)

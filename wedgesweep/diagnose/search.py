@@ -365,8 +365,13 @@ def _leading(evaluations: Sequence[Evaluation], entering: int | None) -> list[Ev
 
 
 def best_per_value(evaluations: Sequence[Evaluation]) -> list[Evaluation]:
-    """The best evaluation at each value of the first parameter, best first: not all starts are neighbours."""
+    """The best evaluation at each value of one parameter, best first: not all starts are neighbours.
+
+    It is the parameter with most values: the first one, or one that is fitted as its logarithm.
+    """
+    points = np.array([each.point.x for each in evaluations])
+    most = int(np.argmax([np.unique(column).size for column in points.T])) if points.size else 0
     best: dict[float, Evaluation] = {}
     for evaluation in sorted(evaluations, key=_chi2):
-        best.setdefault(float(evaluation.point.x[0]), evaluation)
+        best.setdefault(float(evaluation.point.x[most]), evaluation)
     return list(best.values())
