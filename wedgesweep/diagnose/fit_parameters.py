@@ -24,7 +24,7 @@ FIRST, FURTHER = 12, 4
 # Grid points closest to and farthest from a neutral value, as shares of the range.
 CLOSEST, FARTHEST = 4e-3, 0.8
 # With more parameters (amplitudes with phases) the response is linear enough to start at zero; not so beside
-# one that is fitted as its logarithm: amplitudes then start on either side, at this share of their range.
+# one that is fitted as its logarithm: then the first one starts on either side, at this share of its range.
 MOST_GRIDDED, WELL_INSIDE = 3, 0.4
 # Scale of a logarithm, and scale of other parameters as a share of their range.
 LOG_SCALE, RANGE_SCALE = 0.5, 0.1
@@ -221,7 +221,16 @@ class Hypothesis:
         if len(self.parameters) <= MOST_GRIDDED:
             grids = [each.grid(FURTHER if i else FIRST) for i, each in enumerate(self.parameters)]
         elif any(each.logarithmic for each in self.parameters):
-            grids = [each.grid(FURTHER) if each.logarithmic else each.ends() for each in self.parameters]
+            grids = [self._beside_logarithm(each) for each in self.parameters]
         else:
             return np.clip(np.zeros(len(self.parameters)), self.low, self.high)[None]
         return np.array(list(product(*grids)))
+
+    def _beside_logarithm(self, each: FitParameter) -> np.ndarray:
+        """Values of a parameter where one is fitted as its logarithm: the first amplitude begins on a side.
+
+        Others begin at zero: a second harmonic of a wave would do for one of half its length.
+        """
+        if each.logarithmic:
+            return each.grid(FIRST)
+        return each.ends() if each.key == self.parameters[0].key else np.array([each.neutral])

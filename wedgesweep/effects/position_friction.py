@@ -38,7 +38,7 @@ EFFECT = Effect(
             "length of a wave",
             above=0.0,
             off=1.0,
-            search=(1.5, 12.0),
+            search=(0.8, 12.0),
             logarithmic=True,
         ),
         Quantity("second", 0.0, "second harmonic over the mean", minimum=0.0, search=(0.0, 0.9)),
