@@ -40,8 +40,8 @@ EFFECT = Effect(
     systems=(OSCILLATOR,),
     of_loops=True,
     excludes=("damper_play", "series_compliance"),
-    contains=("guide_friction",),
-    limits=("guide_friction",),
+    contains=("guide_friction", "friction_level"),
+    limits=("guide_friction", "friction_level"),
     meaning="dry friction behind springs that slip one after the other (Maxwell, Iwan)",
     quantities=(
         Quantity("force_N", 0.0, "friction force where all elements slip", minimum=0.0, search=(0.0, 10.0)),

@@ -36,6 +36,7 @@ EFFECT = Effect(
     systems=(OSCILLATOR,),
     excludes=("stribeck", "presliding", "ageing", "damper_play"),
     of_loops=True,
+    contains=("viscous_damping",),  # where the spring is stiff
     meaning="a spring in series with the damper and its friction",
     quantities=(
         Quantity(
