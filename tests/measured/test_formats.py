@@ -479,8 +479,9 @@ def test_structs_of_a_new_matlab_tell_names_and_units(tmp_path):
     assert (column.group, column.label, column.channel.unit) == ("run", "speed", "1/min")
 
 
-def test_references_of_a_new_matlab_lead_to_texts_and_to_runs(tmp_path):
-    """Cell arrays and arrays of structs: a matrix with the names of its columns, and two runs."""
+@pytest.mark.parametrize("turned", [False, True])
+def test_references_of_a_new_matlab_lead_to_texts_and_to_runs(tmp_path, turned):
+    """Cell arrays and arrays of structs: a matrix with the names of its columns or rows, and two runs."""
     h5py = pytest.importorskip("h5py")
     with h5py.File(tmp_path / "one.mat", "w") as file:
 
@@ -492,7 +493,8 @@ def test_references_of_a_new_matlab_lead_to_texts_and_to_runs(tmp_path):
         def refer(path, targets):
             file[path] = np.array([[each] for each in targets], h5py.ref_dtype)
 
-        put("rec/data", np.arange(60.0).reshape(3, 20), "double")
+        matrix = np.arange(60.0).reshape(3, 20)
+        put("rec/data", matrix.T if turned else matrix, "double")
         put("rec/nothing", np.zeros(2, "u8"), "double")
         file["rec/nothing"].attrs["MATLAB_empty"] = 1
         for path, texts in ("rec/names", ("Time", "x", "Force")), ("rec/units", ("s", "mm", "kN")):

@@ -8,7 +8,7 @@ import numpy as np
 
 from wedgesweep.processes import apart
 from wedgesweep.readers.extras import module
-from wedgesweep.readers.table import Channel, Wanted, texts_of_columns, unit_and_name
+from wedgesweep.readers.table import Channel, Wanted, matrix_of, texts_of_columns, unit_and_name
 
 # Attributes in which MATLAB says what a dataset is and that it is empty, and groups of what others refer to.
 CLASS, EMPTY, OF_MATLAB = "MATLAB_class", "MATLAB_empty", ("#refs#", "#subsystem#")
@@ -43,7 +43,9 @@ class _Listed(NamedTuple):
         """The samples; MATLAB writes the dimensions of its arrays in reverse."""
         attributes, unit = self.stored.attrs, self.unit
         unit = unit or _decoded(attributes.get("units", attributes.get("unit", "")))
-        values = np.transpose(self.stored[()]) if CLASS in attributes else self.stored[()]
+        values = self.stored[()]
+        if CLASS in attributes:
+            values = np.transpose(values) if self.column is ... else matrix_of(np.transpose(values))
         return Channel(values if self.column is ... else values[self.column], unit, label=self.label)
 
 
