@@ -18,7 +18,7 @@ from wedgesweep.figures.diagnosis.marks import STDS
 DOCS = Path(__file__).parents[2] / "docs"
 RECORDS, RESULTS = DOCS / "validation-records.jsonl", DOCS / "validation.md"
 RIGS_RECORDS = DOCS / "validation-rigs-records.jsonl"
-TIME_RECORDS = DOCS / "validation-time-records.jsonl"
+TIME_RECORDS, LOOP_RECORDS = (DOCS / f"validation-{name}-records.jsonl" for name in ("time", "loop"))
 RIGS = ("imperfect", "errors-only", "random-rig", "oscillator")
 IDEAL = ("clean", "strong", "weak", "pair", "unknown", "poor", "added")
 
@@ -57,7 +57,7 @@ def test_a_smaller_campaign_has_sets_of_the_full_one():
 
 def test_an_effect_that_contains_the_unknown_one_is_no_candidate():
     assert set(candidates()) - set(hiding.candidates_without("stribeck")) == {"stribeck"}
-    left_out = {"viscous_damping", "directional_damping"}
+    left_out = {"viscous_damping", "directional_damping", "degressive_damping", "series_compliance"}
     assert set(candidates()) - set(hiding.candidates_without("viscous_damping")) == left_out
     assert hiding.candidates_without(None) == candidates()
 
@@ -199,17 +199,18 @@ def test_a_test_that_check_refuses_as_not_steady_gets_more_input(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("seed", "records", "kinds"),
+    ("seed", "size", "records", "kinds"),
     [
-        (107, RECORDS, IDEAL),
-        (107, RIGS_RECORDS, RIGS),
-        (107, TIME_RECORDS, (TRANSIENT, LOOP, MIXED)),
+        (107, 1.0, RECORDS, IDEAL),
+        (107, 1.0, RIGS_RECORDS, RIGS),
+        (107, 1.0, TIME_RECORDS, (TRANSIENT, LOOP, MIXED)),
+        (713, 0.7, LOOP_RECORDS, ("damper", "warm", LOOP)),
     ],
-    ids=["bench", "rigs", "time"],
+    ids=["bench", "rigs", "time", "loops"],
 )
-def test_the_results_page_is_what_the_records_say(seed, records, kinds, capsys):
+def test_the_results_page_is_what_the_records_say(seed, size, records, kinds, capsys):
     only = [word for kind in kinds for word in ("--only", kind)]
-    main(["--seed", str(seed), *only, "--records", str(records), "--tables"])
+    main(["--seed", str(seed), "--size", str(size), *only, "--records", str(records), "--tables"])
     printed = capsys.readouterr().out
     assert f"```text\n{printed}```\n" in RESULTS.read_text()
 
