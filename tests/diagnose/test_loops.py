@@ -377,6 +377,16 @@ def test_a_record_may_begin_with_a_reversal(tmp_path, bristles):
         assert np.isfinite(own.simulated([bristles], np.zeros((1, len(own.blocks))))).all()
 
 
+@pytest.mark.parametrize(("samples", "lost"), [(1, False), (40, True)])
+def test_a_force_is_lost_where_a_face_lifts_off_not_where_noise_touches_zero(tmp_path, samples, lost):
+    own = loop_data(read(write(tmp_path, motions=((0.01, 1.1, 6.0),)))).recordings[0]
+    force = np.full((1, own.motion.velocity.size), 7.0)
+    force[0, 1000 : 1000 + samples] = np.nan
+    found = own._compared(force)[0]
+    assert np.isnan(found).any() == lost
+    assert found[np.isfinite(found)] == pytest.approx(7.0, rel=1e-3)
+
+
 def test_strokes_in_one_direction_are_loops(tmp_path):
     path = write(tmp_path)
     header, *lines = (tmp_path / "loop0.csv").read_text().splitlines()

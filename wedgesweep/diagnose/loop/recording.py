@@ -224,6 +224,7 @@ class Recording:
 
     def _compared(self, forces: np.ndarray, delays: Sequence[float] = ()) -> np.ndarray:
         """Forces (n, N) along the motion as they are compared, some time (s) late each."""
+        forces = _without_short_gaps(forces, self.low_pass.stride)
         lost = np.isnan(forces)
         found, samples = self.low_pass(np.where(lost, 0.0, forces)), self.low_pass.rate * np.array(delays)
         for row in np.flatnonzero(samples):
@@ -277,6 +278,21 @@ def recording(test: TestRecord, model: Config, law: str, differences: Sequence[n
         problem = f"its noise is {100.0 * found.noise_share:.0f} % of the force, so that it shows nothing"
         raise InputError([f"{problem}; measure a larger force, lower lowpass_hz, or correct the columns"])
     return replace(found, noise_as_stated=found.noise)
+
+
+def _without_short_gaps(forces: np.ndarray, longest: int) -> np.ndarray:
+    """Forces (n, N), interpolated where they are not determined for at most some samples in a row.
+
+    Where a contact force is about zero, noise of the motion makes it negative in single samples. A face that
+    lifts off, or a mass that rests, is there for more than one compared sample.
+    """
+    found = forces.copy()
+    for row in np.flatnonzero(np.isnan(found).any(axis=1)).tolist():
+        own = found[row]
+        for first, last in marked_runs(np.isnan(own)).tolist():
+            if last - first <= longest and first > 0 and last < own.size:
+                own[first:last] = np.interp(range(first, last), [first - 1, last], own[[first - 1, last]])
+    return found
 
 
 def _spread(marked: np.ndarray, reach: int) -> np.ndarray:
