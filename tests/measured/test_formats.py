@@ -495,6 +495,7 @@ def test_references_of_a_new_matlab_lead_to_texts_and_to_runs(tmp_path, turned):
 
         matrix = np.arange(60.0).reshape(3, 20)
         put("rec/data", matrix.T if turned else matrix, "double")
+        put("rec/gain", 3.0, "double")
         put("rec/nothing", np.zeros(2, "u8"), "double")
         file["rec/nothing"].attrs["MATLAB_empty"] = 1
         for path, texts in ("rec/names", ("Time", "x", "Force")), ("rec/units", ("s", "mm", "kN")):

@@ -1,6 +1,8 @@
 """Variables of HDF5 (.h5, .hdf5) and netCDF (.nc, .nc4) by their paths, group/variable."""
 
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -21,9 +23,17 @@ def hdf5(file: Path, wanted: Wanted) -> dict[str, Channel | None]:
 
 def _hdf5(h5py: Any, file: Path, wanted: Wanted) -> dict[str, Channel | None]:
     with h5py.File(file, "r") as opened:
-        sets: list[Any] = []
-        opened.visititems(lambda _, each: sets.append(each) if isinstance(each, h5py.Dataset) else None)
-        listed = [each for stored in sets for each in _listed(stored)]
+        groups: dict[str, _Group] = {}
+        sets: list[tuple[_Group, str]] = []
+
+        def visit(path: str, each: Any) -> None:
+            group, _, field = path.rpartition("/")
+            if isinstance(each, h5py.Dataset) and each.shape is not None and not path.startswith(OF_MATLAB):
+                sets.append((groups.setdefault(group, _Group(group, {})), field))
+                groups[group].fields[field] = each
+
+        opened.visititems(visit)
+        listed = [each for group, field in sets for each in group.listed(field)]
         return {
             each.name: each.channel() if wanted(each.name, number) else None
             for number, each in enumerate(listed, 1)
@@ -49,34 +59,52 @@ class _Listed(NamedTuple):
         return Channel(values if self.column is ... else values[self.column], unit, label=self.label)
 
 
-def _listed(stored: Any) -> list[_Listed]:
-    """Channels of a dataset; of a field of an array of structs of MATLAB, those of each struct."""
-    path = stored.name.removeprefix("/")
-    if stored.shape is None or path.startswith(OF_MATLAB):
-        return []
-    group, _, field = path.rpartition("/")
-    if structs := _structs(stored):
-        fields = [(own, f"{group}({i}).{field}") for i, own in enumerate(structs, 1)]
-        return [each for own, name in fields for each in _of_matlab(own[field], name, own)]
-    if CLASS in stored.attrs:
-        return _of_matlab(stored, path, stored.parent)
-    items = stored.parent.get(f"{field.removesuffix('_values')}_items")
-    if items is None or not path.endswith("_values") or stored.shape[1:] != items.shape:
-        return [_Listed(path, stored)]
-    names = enumerate(map(_decoded, items[()]))
-    return [_Listed(f"{group}/{name}", stored, (slice(None), i)) for i, name in names]
+@dataclass(frozen=True)
+class _Group:
+    """The datasets of a group by their names; of a struct of MATLAB, its fields."""
+
+    path: str
+    fields: dict[str, Any]
+
+    @cached_property
+    def words(self) -> dict[str, list[str]]:
+        return _words(self.fields)
+
+    @cached_property
+    def structs(self) -> list[dict[str, Any]]:
+        """The structs of an array, whose fields are datasets of references; empty if it is none."""
+        referred = {name: _referred(each) for name, each in self.fields.items() if CLASS not in each.attrs}
+        count = max(map(len, referred.values()), default=0)
+        return [
+            {name: each[i] for name, each in referred.items() if len(each) == count} for i in range(count)
+        ]
+
+    def listed(self, field: str) -> list[_Listed]:
+        """Channels of a dataset; of a field of an array of structs, those of each struct."""
+        stored = self.fields[field]
+        path = f"{self.path}/{field}".removeprefix("/")
+        if CLASS in stored.attrs:
+            return _of_matlab(stored, path, self.words)
+        if _refers(stored):
+            fields = [
+                (own, f"{self.path}({i}).{field}") for i, own in enumerate(self.structs, 1) if field in own
+            ]
+            return [each for own, name in fields for each in _of_matlab(own[field], name, _words(own))]
+        items = self.fields.get(f"{field.removesuffix('_values')}_items")
+        if items is None or not path.endswith("_values") or stored.shape[1:] != items.shape:
+            return [_Listed(path, stored)]
+        names = enumerate(map(_decoded, items[()]))
+        return [_Listed(f"{self.path}/{name}", stored, (slice(None), i)) for i, name in names]
 
 
 def _decoded(text: Any) -> str:
     return text.decode("utf-8", "replace") if isinstance(text, bytes) else str(text)
 
 
-def _of_matlab(stored: Any, path: str, beside: Mapping[str, Any]) -> list[_Listed]:
+def _of_matlab(stored: Any, path: str, words: Mapping[str, list[str]]) -> list[_Listed]:
     """An array of a struct; or its columns, where a cell array beside it has a text for each."""
-    kind = stored.dtype.kind if hasattr(stored, "dtype") else ""
-    if not kind or kind not in "biuf" or EMPTY in stored.attrs or _texts(stored):
+    if stored.dtype.kind not in "biuf" or EMPTY in stored.attrs or _texts(stored):
         return []
-    words = {name: texts for name, each in beside.items() if (texts := _texts(each))}
     if columns := texts_of_columns(words, np.broadcast_to(0.0, stored.shape[::-1])):
         return [
             _Listed(f"{path}[{i}]", stored, (..., i - 1), *unit_and_name(each))
@@ -86,28 +114,29 @@ def _of_matlab(stored: Any, path: str, beside: Mapping[str, Any]) -> list[_Liste
     return [_Listed(path, stored, ..., *unit_and_name(alone))]
 
 
-def _structs(stored: Any) -> list[dict[str, Any]]:
-    """The structs of an array, a field of which is a dataset of references; empty if it is none."""
-    count = 0 if CLASS in stored.attrs else len(_referred(stored))
-    beside = stored.parent.items() if count else ()
-    fields = {name: _referred(each) for name, each in beside if hasattr(each, "dtype")}
-    return [{name: each[i] for name, each in fields.items() if len(each) == count} for i in range(count)]
+def _refers(stored: Any) -> bool:
+    return bool((stored.dtype.metadata or {}).get("ref"))
 
 
 def _referred(stored: Any) -> list[Any]:
-    """What a dataset of references leads to."""
-    if not (stored.dtype.metadata or {}).get("ref"):
-        return []
-    return [stored.file[each] for each in stored[()].ravel() if each]
+    """Datasets that one of references leads to."""
+    found = [stored.file[each] for each in stored[()].ravel() if each] if _refers(stored) else []
+    return [each for each in found if hasattr(each, "dtype")]
+
+
+def _words(fields: Mapping[str, Any]) -> dict[str, list[str]]:
+    """Texts by the names of the fields that hold them."""
+    return {name: texts for name, each in fields.items() if (texts := _texts(each))}
 
 
 def _texts(stored: Any) -> list[str]:
     """A text of MATLAB, or those of a cell array; empty for anything else."""
-    kind = stored.attrs.get(CLASS)
-    if kind == b"char":
-        return ["" if EMPTY in stored.attrs else "".join(map(chr, stored[()].ravel().tolist()))]
-    cells = [_texts(each) for each in _referred(stored)] if kind == b"cell" else []
-    return [text for texts in cells for text in texts] if all(len(texts) == 1 for texts in cells) else []
+    texts = _referred(stored) if stored.attrs.get(CLASS) == b"cell" else [stored]
+    return [_text(each) for each in texts] if all(each.attrs.get(CLASS) == b"char" for each in texts) else []
+
+
+def _text(stored: Any) -> str:
+    return "" if EMPTY in stored.attrs else "".join(map(chr, stored[()].ravel().tolist()))
 
 
 def netcdf(file: Path, wanted: Wanted) -> dict[str, Channel | None]:

@@ -98,7 +98,7 @@ def unit_and_name(words: Mapping[str, str]) -> tuple[str, str]:
 
 def texts_of_columns(texts: Mapping[str, Sequence[str]], values: np.ndarray) -> list[dict[str, str]]:
     """For each column of a matrix the texts of lists beside it that have one for each; else empty."""
-    count, size = matrix_of(values).shape[-1], values.size
+    count, size = matrix_of(np.atleast_1d(values)).shape[-1], values.size
     lists = {key: each for key, each in texts.items() if 1 < len(each) == count < size}
     return [{key: each[i] for key, each in lists.items()} for i in range(count)] if lists else []
 
