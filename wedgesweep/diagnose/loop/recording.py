@@ -167,7 +167,7 @@ class Recording:
         much; that of the velocity moves them to and fro.
         """
         parts = self.motion.parts
-        force = np.nan_to_num(self._forces([values], zeros, parts)[0])
+        force = self._forces([values], zeros, parts)[0]
         changes = [
             max(noise, LEAST_CHANGE * float(np.abs(own).max()))
             for noise, own in zip(self.motion.noise, parts, strict=True)
@@ -183,7 +183,8 @@ class Recording:
                 for moved in (own + step, own - step)
             )
             found.append(np.nan_to_num((above - below) / (2.0 * step)))
-        return Derivatives((found[0] + by_bristles, found[1], found[2]), motion_noise.jumps(force))
+        jumps = motion_noise.jumps(np.nan_to_num(force))
+        return Derivatives((found[0] + by_bristles, found[1], found[2]), jumps)
 
     def simulated(self, scenarios: list[Values], zeros: np.ndarray) -> np.ndarray:
         """Forces (n, k) under the values of n scenarios; NaN where they are not determined.
@@ -224,8 +225,10 @@ class Recording:
 
     def _compared(self, forces: np.ndarray, delays: Sequence[float] = ()) -> np.ndarray:
         """Forces (n, N) along the motion as they are compared, some time (s) late each."""
-        forces = _without_short_gaps(forces, self.low_pass.stride)
         lost = np.isnan(forces)
+        if lost.any():
+            forces = _without_short_gaps(forces, self.low_pass.stride)
+            lost = np.isnan(forces)
         found, samples = self.low_pass(np.where(lost, 0.0, forces)), self.low_pass.rate * np.array(delays)
         for row in np.flatnonzero(samples):
             found[row] = shift(found[row], samples[row], order=5, mode="nearest")
