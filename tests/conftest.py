@@ -7,6 +7,7 @@ from contextlib import suppress
 from hashlib import sha256
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from wedgesweep import figures
@@ -19,6 +20,8 @@ KERNELS = ROOT / ".kernels"
 
 # Threads of numpy's libraries stand in each other's way on a busy machine.
 os.environ.update(dict.fromkeys(THREADS, "1"))
+# As the command does, for the same reason.
+gc.set_threshold(100_000)
 # Pictures are looked at by nobody here.
 figures.DOTS_PER_INCH = 40
 # Before wedgesweep.compiled is imported, which reads it. Its folders in there are named for the sources.
@@ -41,7 +44,10 @@ def _compile_once() -> None:
             function = function_of(self)
             if not isinstance(self._cache, KernelCache):
                 return compile_here(self, *signature)
-            name = f"{function.__module__}.{function.__qualname__} {signature or self._sig}"
+            # A period map is compiled once for each kind of records, which its closure holds.
+            held = [cell.cell_contents for cell in function.__closure__ or ()]
+            kinds = [each for each in held if isinstance(each, np.dtype)]
+            name = f"{function.__module__}.{function.__qualname__} {signature or self._sig} {kinds}"
             path = KERNELS / f"{sha256(name.encode()).hexdigest()[:16]}.lock"
             with global_compiler_lock, path.open("w") as lock:
                 fcntl.flock(lock, fcntl.LOCK_EX)

@@ -178,6 +178,20 @@ def test_a_temporary_folder_of_somebody_else_is_not_used(tmp_path, monkeypatch):
     assert kernels.folder() is None
 
 
+def test_code_that_nobody_used_for_a_month_is_removed(place):
+    """And nothing else that lies there; code that is used stays however old it is."""
+    unused, recent, others = (place / name for name in ("0" * 16, "1" * 16, "of the user"))
+    for folder in (unused, recent, others):
+        folder.mkdir(parents=True)
+        (folder / "code").touch()
+    used = place / kernels.folder().name
+    for folder in (unused, others, used):
+        os.utime(folder, (0.0, 0.0))
+    kernels._usable.cache_clear()
+    assert kernels.folder() == used
+    assert {each.name for each in place.iterdir()} == {recent.name, others.name, used.name}
+
+
 @pytest.mark.acceptance
 def test_numbas_own_compiler_gives_the_same_numbers(place):
     """The way out where numba's internals differ from what inner_code.py needs."""

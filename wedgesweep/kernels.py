@@ -5,16 +5,21 @@ behind. Here the name of the folder is a digest of all sources that code may com
 those of registered modules (laws, effects and systems from outside), and of whatever these import.
 
 ``WEDGESWEEP_CACHE_DIR`` names another place than the user's cache folder. No setting of numba is changed.
+Folders of sources that nobody has run for a month are removed.
 """
 
 import ast
 import os
+import re
 import sys
+import time
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from functools import cache
 from hashlib import sha256
 from importlib.util import resolve_name
 from pathlib import Path
+from shutil import rmtree
 from tempfile import TemporaryFile, gettempdir
 from types import ModuleType
 from typing import Any
@@ -29,6 +34,8 @@ PLAIN = os.environ.get("WEDGESWEEP_COMPILER") == "plain"
 COMPILES = b"from wedgesweep.compiled"
 # Modules whose sources do not count: those of Python, this package, and libraries that compiled code can use.
 KNOWN = sys.stdlib_module_names | {PACKAGE.name, "numba", "llvmlite", "numpy"}
+# Time (s) after which code that nobody used is removed: a version takes 60 MB, and is compiled in a minute.
+KEPT = 30 * 86400.0
 
 _registered: dict[str, ModuleType] = {}
 
@@ -67,10 +74,20 @@ def _usable(home: Path, digest: str) -> Path | None:
                 continue  # code from there would be run
             (parent / digest).mkdir(exist_ok=True)
             with TemporaryFile(dir=parent / digest):
+                os.utime(parent / digest)
+                _remove_unused(parent)
                 return parent / digest
         except OSError:
             continue
     return None
+
+
+def _remove_unused(home: Path) -> None:
+    """Remove the folders of digests that no process has used for long."""
+    for each in home.iterdir():
+        with suppress(FileNotFoundError):  # another process has removed it
+            if re.fullmatch("[0-9a-f]{16}", each.name) and each.stat().st_mtime < time.time() - KEPT:
+                rmtree(each, ignore_errors=True)
 
 
 def _digest() -> str:

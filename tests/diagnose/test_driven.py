@@ -79,6 +79,7 @@ def test_a_cause_without_mechanics_of_its_own_is_named_under_a_swept_sine(tmp_pa
     is_told(found, SOFT, 1e-3)
 
 
+@pytest.mark.acceptance
 def test_a_damper_that_is_too_strong_is_fitted_beside_a_cause_where_it_is_uncertain(tmp_path):
     """The model has 10 % more damping than the rig, as a first estimate from data may have."""
     hidden = {"friction_level": {"scale": 1.3}}

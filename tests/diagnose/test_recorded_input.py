@@ -168,6 +168,7 @@ def test_noise_of_the_input_is_no_harmonic_where_friction_nearly_holds():
     assert np.mean(ratios) == pytest.approx(1.0, abs=0.1)
 
 
+@pytest.mark.acceptance
 def test_the_cause_is_named_and_the_distortion_is_not_blamed():
     found = diagnose(measurement(1, CAUSE), ("guide_friction", "friction_level", "input_distortion"))
     assert found.finding.verdict in ("named", "consistent-with")

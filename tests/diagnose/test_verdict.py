@@ -409,7 +409,8 @@ def rated(accuracy, *effects, held_out=None):
         ((np.inf, None), (0.004, 0.016), 0.26, 0.008, 0.003, "consistent-with"),
         ((0.62, 0.65), (0.056, 0.06), 0.18, 0.06, 0.03, "consistent-with"),
         ((0.47, 0.70), (0.004, 0.016), 0.009, 0.008, 0.003, "none-of-mine"),
-        ((0.47, 0.70), (0.004, 0.016), 0.26, 0.003, 0.003, "none-of-mine"),
+        ((0.47, 0.70), (0.004, 0.016), 0.26, 0.003, 0.003, "tied"),
+        ((0.47, 0.70), (0.004, 0.016), 0.26, 0.001, 0.003, "none-of-mine"),
         ((0.47, 0.70), (0.004, 0.4), 0.26, 0.008, 0.003, "none-of-mine"),
         ((0.47, 0.70), (0.004, None), 0.26, 0.008, 0.003, "none-of-mine"),
         ((0.47, 0.70), (0.004, 0.016), 0.26, 0.008, 0.001, "consistent-with"),
@@ -421,17 +422,21 @@ def rated(accuracy, *effects, held_out=None):
 def test_one_effect_that_is_far_more_accurate_than_all_others_is_the_cause(
     base, best, rival, pair, with_it, expected
 ):
-    """Though none reaches the noise; not if a pair without it does better, or held-out tests disagree."""
+    """Though none reaches the noise; not if a pair without it is far better, or held-out tests disagree.
+
+    A pair without it that is a little more accurate may be the same physics: the two are tied.
+    """
     unexplained = verdict_of(explained(5000.0), explained(1500.0, "ageing"))
     single = rated(best[0], "ageing", held_out=best[1])
     levels = (
         Level((rated(base[0], held_out=base[1]),)),
         Level((single, rated(rival, "stribeck"))),
-        Level((rated(with_it, "ageing", "preload"), rated(pair, "stribeck", "preload"))),
+        Level((rated(with_it, "ageing", "preload"), two := rated(pair, "stribeck", "preload"))),
     )
     found = verdict.by_accuracy(unexplained, levels)
     assert found.verdict == expected
-    if expected == "consistent-with":
+    assert found.rivals == ((two.explanation,) if expected == "tied" else ())
+    if expected != "none-of-mine":
         assert (found.reason, found.cause) == (Reason.MORE_ACCURATE, single.explanation)
         assert found.numbers["next_best"] == rival
         # One that holds the cause and leaves much less may have its numbers.

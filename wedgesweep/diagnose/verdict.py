@@ -372,21 +372,27 @@ def by_accuracy(finding: Finding, levels: "Sequence[Level]") -> Finding:
 
     It has one effect, or two where no single one leads. It must be more accurate than the base model and all
     others with as many effects, or fewer, by the factor CLEAR, and beat the base model on held-out tests by
-    that factor as well. Two that share an effect and each lead all others are tied. No larger one without
-    them may be more accurate. One with either may be by that factor if nothing else leads: then it is a part
-    of what is missing, and its numbers are as uncertain as the rest.
+    that factor as well. Two that share an effect and each lead all others are tied with each other, and with
+    larger ones without them that are more accurate by less than that factor: they may be the same physics in
+    another form. By more, only one with either may be, if nothing else leads: then it is a part of what is
+    missing, and its numbers are as uncertain as the rest.
     """
     if finding.verdict != NONE:
         return finding
     leading = {size: _leading(levels, size) for size in range(1, min(len(levels), MOST_NAMED + 1))}
-    larger = {size: _surpassing(levels, size, found) for size, found in leading.items() if found}
-    sizes = [size for size in larger if all(_holds(each, leading[size]) for each in larger[size])]
+    beside = {size: _more_accurate(levels, size, found) for size, found in leading.items() if found}
+    sizes = [
+        size
+        for size, (similar, larger) in beside.items()
+        if len(similar) < MOST_TIED and all(_holds(each, leading[size]) for each in larger)
+    ]
     if not sizes:
         return finding
-    size = min(sizes, key=lambda size: (bool(larger[size]), size))
-    best, *rivals = leading[size]
-    least = min((each.accuracy for each in larger[size]), default=0.0)
-    close = [each for each in larger[size] if each.accuracy <= CLEAR * least]
+    size = min(sizes, key=lambda size: (any(beside[size]), size))
+    similar, larger = beside[size]
+    best, *rivals = (*leading[size], *similar)
+    least = min((each.accuracy for each in larger), default=0.0)
+    close = [each for each in larger if each.accuracy <= CLEAR * least]
     numbers: dict[str, Any] = {"accuracy": best.accuracy, "base": levels[0].best.accuracy}
     numbers |= {"next_best": _next_best(levels, size, leading[size]), "held_out": best.held_out}
     numbers |= {"rivals": _accuracies(rivals), "larger": _accuracies(close)}
@@ -431,15 +437,17 @@ def _clearly_ahead(levels: "Sequence[Level]", size: int, leading: "Sequence[Rate
     )
 
 
-def _surpassing(levels: "Sequence[Level]", size: int, leading: "Sequence[Rated]") -> "list[Rated]":
-    """Larger explanations that are more accurate than the leading ones, by CLEAR if they hold one of them."""
+def _more_accurate(
+    levels: "Sequence[Level]", size: int, leading: "Sequence[Rated]"
+) -> "tuple[list[Rated], list[Rated]]":
+    """Larger explanations that are more accurate than the leading ones: by less than CLEAR, and by more.
+
+    Of the first those that hold one of the leading ones are left out, which gain so much by another number.
+    """
     best = leading[0].accuracy
-    return [
-        each
-        for level in levels[size + 1 :]
-        for each in level.rated
-        if each.accuracy * (CLEAR if _holds(each, leading) else 1.0) < best
-    ]
+    more = [each for level in levels[size + 1 :] for each in level.rated if each.accuracy < best]
+    larger = [each for each in more if CLEAR * each.accuracy < best]
+    return [each for each in more if each not in larger and not _holds(each, leading)], larger
 
 
 def _holds(larger: "Rated", leading: "Sequence[Rated]") -> bool:
