@@ -14,8 +14,9 @@ from wedgesweep import figures
 from wedgesweep.__main__ import THREADS
 
 ROOT = Path(__file__).parents[1]
-# Long files that compile nothing, for the time in which sweep/test_axes.py compiles what most others need.
-FIRST = (Path(__file__).with_name("test_figures.py"), Path(__file__).with_name("test_report.py"))
+# Folders whose tests compile most, and what the others need: one process runs them, from the beginning, and
+# compiles each function once. The tests of LAST find it compiled.
+MECHANICS, LAST = ("config", "physics", "sweep"), "diagnose"
 KERNELS = ROOT / ".kernels"
 
 # Threads of numpy's libraries stand in each other's way on a busy machine.
@@ -70,18 +71,30 @@ def empty_pictures(monkeypatch):
     monkeypatch.setattr(figures, "save", lambda figure, path: Path(path).touch())
 
 
+def _folder(nodeid):
+    return Path(nodeid).parts[1]
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config, log):
+    """Give a process files in turn, and one of them all those of the mechanics."""
+    from xdist.scheduler import LoadFileScheduling
+
+    if config.option.dist != "loadfile":
+        return None
+
+    class Scheduling(LoadFileScheduling):
+        def _split_scope(self, nodeid):
+            return "mechanics" if _folder(nodeid) in MECHANICS else super()._split_scope(nodeid)
+
+    return Scheduling(config, log)
+
+
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items):
-    """Of a test that is marked ``few(n)`` leave n sets of parameters to ``make test``, from all over them.
-
-    Both processes of ``make test`` get files in turn: neighbours are from different folders, so that they do
-    not wait for each other to compile the same code.
-    """
-    folders, sets = {FIRST[0].parent: [*FIRST]}, {}
-    for item in items:
-        files = folders.setdefault(item.path.parent, [])
-        files += [] if item.path in files else [item.path]
-    items.sort(key=lambda item: 0 if item.path in FIRST else folders[item.path.parent].index(item.path))
+    """Of a test that is marked ``few(n)`` leave n sets of parameters to ``make test``, from all over them."""
+    items.sort(key=lambda item: (_folder(item.nodeid) not in MECHANICS, _folder(item.nodeid) == LAST))
+    sets = {}
     for item in items:
         if item.get_closest_marker("few"):
             sets.setdefault((item.path, item.originalname), []).append(item)
