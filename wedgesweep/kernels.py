@@ -34,7 +34,7 @@ PLAIN = os.environ.get("WEDGESWEEP_COMPILER") == "plain"
 COMPILES = b"from wedgesweep.compiled"
 # Modules whose sources do not count: those of Python, this package, and libraries that compiled code can use.
 KNOWN = sys.stdlib_module_names | {PACKAGE.name, "numba", "llvmlite", "numpy"}
-# Time (s) after which code that nobody used is removed: a version takes 60 MB, and is compiled in a minute.
+# Time (s) after which code that nobody used is removed: tens of MB a version, compiled again in a minute.
 KEPT = 30 * 86400.0
 
 _registered: dict[str, ModuleType] = {}
