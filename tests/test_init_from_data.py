@@ -753,10 +753,11 @@ def test_a_counter_of_samples_is_no_time(tmp_path):
     )
 
 
-def test_numbers_of_any_size_are_no_obstacle(tmp_path):
+@pytest.mark.parametrize(("damaged", "places"), [(1, [100, 101]), (0, [-1, 0])])
+def test_numbers_of_any_size_are_no_obstacle(tmp_path, damaged, places):
     """A damaged byte of a binary file may be an exponent."""
-    t, d, v = vibration()
-    d[100:102] = 1.7e308, -1.7e308
+    t, d, v = signals = vibration()
+    signals[damaged][places] = 1.7e308, -1.7e308
     np.savez(tmp_path / "one.npz", t=t, d=d, v=v)
     told = invoke("init", tmp_path / "measured.toml", "--data", tmp_path / "one.npz", code=2)
     assert "in SI units is too large" in told
