@@ -63,7 +63,7 @@ def test_free_bodies_fly_under_the_spring_between_them():
         of_bolster = -(s["bolster_spring"] * z + 2.0 * force) / s["bolster_mass"] - s["gravity"] - base
         expected = speed, of_bolster, y[3], -of_wedge @ n_c, y[5], (of_wedge - [0.0, of_bolster]) @ p_b
         assert compiled_unilateral.rate_at(t, y, compact(case)) == pytest.approx(expected, rel=1e-9)
-    assert t_c @ n_c == 0.0
+    assert t_c @ n_c == pytest.approx(0.0, abs=1e-15)  # some processors round the products, others their sum
 
 
 @pytest.mark.parametrize("lean", LEANS)
