@@ -476,6 +476,11 @@ def test_two_effects_that_are_far_more_accurate_than_all_others_are_the_cause(
     # One that holds them as a special case is no other explanation, but must lead clearly as well.
     springs = Level((rated(0.9 * pair, "maxwell_presliding", "presliding", "channel_delay"),))
     assert verdict.by_accuracy(unexplained, (*levels[:3], springs)).verdict == expected
+    # Three more that are a little more accurate tie with one, and are too many beside two.
+    third = ("preload", "cross_slip", "viscous_damping")
+    crowd = Level(tuple(rated(0.9 * pair, "stribeck", "ageing", each) for each in third))
+    crowded = {"consistent-with": "tied", "tied": "none-of-mine"}.get(expected, expected)
+    assert verdict.by_accuracy(unexplained, (*levels[:3], crowd)).verdict == crowded
     two_numbers = Level((rated(pair, "bolster_mass", "bolster_stiffness", held_out=pair),))
     assert verdict.by_accuracy(unexplained, (*levels[:2], two_numbers)).verdict == "none-of-mine"
 

@@ -380,17 +380,16 @@ def by_accuracy(finding: Finding, levels: "Sequence[Level]") -> Finding:
     if finding.verdict != NONE:
         return finding
     leading = {size: _leading(levels, size) for size in range(1, min(len(levels), MOST_NAMED + 1))}
-    beside = {size: _more_accurate(levels, size, found) for size, found in leading.items() if found}
+    beside = {size: _beside(levels, size, found) for size, found in leading.items() if found}
     sizes = [
         size
-        for size, (similar, larger) in beside.items()
-        if len(similar) < MOST_TIED and all(_holds(each, leading[size]) for each in larger)
+        for size, (rivals, larger) in beside.items()
+        if len(rivals) < MOST_TIED and all(_holds(each, leading[size]) for each in larger)
     ]
     if not sizes:
         return finding
-    size = min(sizes, key=lambda size: (any(beside[size]), size))
-    similar, larger = beside[size]
-    best, *rivals = (*leading[size], *similar)
+    size = min(sizes, key=lambda size: (bool(beside[size][1]), size))
+    best, (rivals, larger) = leading[size][0], beside[size]
     least = min((each.accuracy for each in larger), default=0.0)
     close = [each for each in larger if each.accuracy <= CLEAR * least]
     numbers: dict[str, Any] = {"accuracy": best.accuracy, "base": levels[0].best.accuracy}
@@ -437,17 +436,17 @@ def _clearly_ahead(levels: "Sequence[Level]", size: int, leading: "Sequence[Rate
     )
 
 
-def _more_accurate(
+def _beside(
     levels: "Sequence[Level]", size: int, leading: "Sequence[Rated]"
 ) -> "tuple[list[Rated], list[Rated]]":
-    """Larger explanations that are more accurate than the leading ones: by less than CLEAR, and by more.
+    """What is tied with the best of the leading explanations, and larger ones that are far more accurate.
 
-    Of the first those that hold one of the leading ones are left out, which gain so much by another number.
+    Larger ones that hold a leading one, and gain less than CLEAR by another number, are neither.
     """
-    best = leading[0].accuracy
-    more = [each for level in levels[size + 1 :] for each in level.rated if each.accuracy < best]
-    larger = [each for each in more if CLEAR * each.accuracy < best]
-    return [each for each in more if each not in larger and not _holds(each, leading)], larger
+    best, *tied = leading
+    more = [each for level in levels[size + 1 :] for each in level.rated if each.accuracy < best.accuracy]
+    larger = [each for each in more if CLEAR * each.accuracy < best.accuracy]
+    return [*tied, *(each for each in more if each not in larger and not _holds(each, leading))], larger
 
 
 def _holds(larger: "Rated", leading: "Sequence[Rated]") -> bool:
