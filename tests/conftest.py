@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from wedgesweep import figures
-from wedgesweep.__main__ import THREADS
+from wedgesweep.__main__ import GARBAGE, THREADS
 
 ROOT = Path(__file__).parents[1]
 # Folders whose tests compile most, and what the others need: one process runs them, from the beginning, and
@@ -21,8 +21,7 @@ KERNELS = ROOT / ".kernels"
 
 # Threads of numpy's libraries stand in each other's way on a busy machine.
 os.environ.update(dict.fromkeys(THREADS, "1"))
-# As the command does, for the same reason.
-gc.set_threshold(100_000)
+gc.set_threshold(GARBAGE)
 # Pictures are looked at by nobody here.
 figures.DOTS_PER_INCH = 40
 # Before wedgesweep.compiled is imported, which reads it. Its folders in there are named for the sources.

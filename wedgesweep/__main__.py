@@ -11,13 +11,16 @@ import sys
 # loaded, and the jobs inherit it.
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
+# New objects after which Python looks for garbage. Compilation makes millions that stay: by default it would
+# look 150 times as often, a sixth of the time of a first run.
+GARBAGE = 100_000
+
 
 def main() -> None:
     """Run the command line."""
     os.environ.update(dict.fromkeys(THREADS, "1"))
-    # This process is the command's own. Compilation makes millions of objects that stay: Python would look
-    # for garbage among them 150 times as often, a sixth of the time of a first run, and again before it ends.
-    gc.set_threshold(100_000)
+    # This process is the command's own; what is left when it ends need not be looked through.
+    gc.set_threshold(GARBAGE)
     atexit.register(gc.freeze)
     for stream in (sys.stdout, sys.stderr):
         # A terminal that cannot show a character, as in the locale C, gets its code.
