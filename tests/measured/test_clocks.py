@@ -10,6 +10,8 @@ from tests import fixture_measured
 from tests.diagnose import test_loops
 from tests.fixture_measured import MEASURED, csv_lines, vibration
 from wedgesweep import measured
+from wedgesweep.diagnose.noise_bins import noise_of_record
+from wedgesweep.diagnose.noise_spectrum import periodogram
 from wedgesweep.measured import consistency
 from wedgesweep.measured.clock import fit_clock, resolution
 from wedgesweep.measured.even import evened
@@ -80,6 +82,39 @@ def test_frames_that_a_noisy_video_lost_are_made_up():
         kept = np.r_[0:100, 100 + lost : 360]
         signal = Signal(t[kept], angle[kept], np.full(kept.size, 1e-6), str)
         assert evened({"displacement": signal}).time.size == size
+
+
+@pytest.mark.parametrize("jitter", [0.0, 0.1, 0.3])
+@pytest.mark.parametrize("lost", [0, 2, 4])
+def test_the_error_of_interpolation_is_what_is_told(jitter, lost):
+    stamps = EVEN + 1e-3 * jitter * np.random.default_rng(2).uniform(-1, 1, 1000)
+    kept = np.r_[0:400, 400 + lost : 1000]
+    signal = Signal(stamps[kept], true_signal(stamps[kept]), np.full(kept.size, 1e-9), str)
+    found = evened({"displacement": signal})
+    error = np.abs(found.columns["displacement"] - true_signal(found.time)).max() / true_signal(EVEN).std()
+    told = re.findall("an error of about (.*) % of displacement", "; ".join(found.remarks))
+    assert told or error < 1e-9
+    if told:
+        assert 1.0 / 3.0 < 100.0 * error / float(told[0]) < 3.0
+
+
+@pytest.mark.parametrize("per_swing", [15, 30, 60])
+@pytest.mark.parametrize("jitter", [0.1, 0.3])
+def test_the_noise_of_a_record_holds_the_error_of_interpolation(per_swing, jitter):
+    """The noise is read from the interpolated record, so that fits know this error; no other noise here."""
+    stamps = np.arange(7.5 * per_swing) / per_swing
+    stamps += jitter / per_swing * np.random.default_rng(7).uniform(-1, 1, stamps.size)
+
+    def swings(time):
+        """Free motion with dry friction: each half swing is a cosine about a centre on the side it leaves."""
+        half = np.floor(2.0 * time)
+        return (1.0 - 0.05 * (2.0 * half + 1.0)) * np.cos(2.0 * np.pi * time) + 0.05 * (-1.0) ** half
+
+    found = evened({"displacement": Signal(stamps, swings(stamps), np.full(stamps.size, 1e-9), str)})
+    frequency, error = periodogram(found.columns["displacement"] - swings(found.time))
+    noise = noise_of_record(found.columns["displacement"])(frequency)
+    of_motion = frequency < 2.0 * np.pi * 5.0 / per_swing
+    assert 0.0 < error[of_motion].mean() < noise[of_motion].mean()
 
 
 def test_a_pause_ends_the_part_that_is_used(tmp_path):

@@ -1,6 +1,6 @@
 """Signals on clocks of their own, with jitter, gaps or doubled stamps, brought to one even grid."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from math import prod
 
@@ -16,6 +16,8 @@ FEWEST = 8
 MOST_ERROR, ADDED = 0.02, 0.1
 # Error of a cubic half way between samples, over that at a sample left out: 0.5^2 1.5^2 / (1^2 2^2).
 HALF_WAY = 0.14
+# Samples that remain beside a gap that is made in a record, at either side, and how often gaps are shifted.
+BESIDE, SHIFTS = 5, 4
 # Rounding of the stamps over their step from which a rate is fitted that they do not show one by one.
 COARSE = 0.5
 # Relative error of a rate (the rounding of n stamps over their span and the root of n) that is too large.
@@ -56,15 +58,27 @@ class _Placed:
     time: np.ndarray
 
     def error(self, lost: int) -> float:
-        """Error (rms, in SI) of interpolation in a gap of ``lost`` samples, from gaps made in the signal."""
-        near, y = (lost + 2) // 2, self.signal.samples
-        far = near + 1
-        if y.size <= 4 * far:
-            return float("inf")
-        inner = y[1 : -2 * near - 1] + y[2 * near + 1 : -1]
-        outer = y[: -2 * far] + y[2 * far :]
-        guessed = (far**2 * inner - near**2 * outer) / (2.0 * (far**2 - near**2))
-        return float(np.sqrt(np.mean((guessed - y[far:-far]) ** 2)))
+        """Error (rms, in SI) of interpolation amid gaps of ``lost`` samples that are made in the signal.
+
+        None is made near a gap that the record has, where there is room elsewhere.
+        """
+        period, size = lost + 2 * BESIDE, self.time.size
+        before = np.concatenate([[0], np.cumsum(self.clock.gaps)])
+        errors: list[np.ndarray] = []
+        for shift in range(0, period, -(-period // SHIFTS)):
+            starts = np.arange(shift, size - period + 1, period)
+            whole = before[starts + period - 1] == before[starts]
+            starts = BESIDE + (starts[whole] if whole.any() else starts)
+            kept = np.delete(np.arange(size), starts[:, None] + np.arange(lost))
+            amid = starts + lost // 2
+            errors.append(self._spline(kept)(self.time[amid]) - self.signal.samples[amid])
+        found = np.concatenate(errors)
+        return float(np.sqrt(np.mean(found**2))) if found.size else float("inf")
+
+    def _spline(self, kept: np.ndarray | slice = slice(None)) -> Callable[[np.ndarray], np.ndarray]:
+        from scipy.interpolate import CubicSpline
+
+        return CubicSpline(self.time[kept], self.signal.samples[kept])
 
     def long_gaps(self) -> np.ndarray:
         """Indices of the samples before gaps that are too long to be filled."""
@@ -77,8 +91,6 @@ class _Placed:
 
     def at(self, time: np.ndarray) -> tuple[np.ndarray, float]:
         """Samples at times (m,) in s, and the largest error of interpolation over the signal's rms."""
-        from scipy.interpolate import CubicSpline
-
         after = np.clip(np.searchsorted(self.time, time), 1, self.time.size - 1)
         gap = self.time[after] - self.time[after - 1]
         part = np.clip((time - self.time[after - 1]) / gap, 0.0, 1.0)
@@ -91,8 +103,7 @@ class _Placed:
         worst = max(
             (size * float(moved[lost == each].max(initial=0.0)) for each, size in errors.items()), default=0.0
         )
-        found = CubicSpline(self.time, self.signal.samples)(time)
-        return found, worst / max(float(self.signal.samples.std()), TINY)
+        return self._spline()(time), worst / max(float(self.signal.samples.std()), TINY)
 
 
 def evened(signals: Mapping[str, Signal]) -> Even:
@@ -114,9 +125,7 @@ def evened(signals: Mapping[str, Signal]) -> Even:
             errors[name] = f"{100.0 * error:.2g} % of {name}{other}"
     if errors:
         rate = f"{1.0 / leading.clock.step:.6g} Hz"
-        remarks.append(
-            f"interpolated evenly at {rate}, with an error of at most {', '.join(errors.values())}"
-        )
+        remarks.append(f"interpolated evenly at {rate}, with an error of about {', '.join(errors.values())}")
     return Even(time, columns, tuple(dict.fromkeys(remarks)))
 
 
