@@ -121,6 +121,19 @@ def test_noise_is_told_at_the_frequencies_of_the_motion(pole, orders):
         assert found[..., 1:].max() < 4.0
 
 
+@pytest.mark.parametrize("level", [0.01, 0.05])
+def test_jumps_of_an_acceleration_are_no_noise_beside_the_displacement(level):
+    """The displacement has them, too: its second derivative says what is noise."""
+    rng, frictions = np.random.default_rng(8), (0.04, 0.06)
+    clean = [(decay(each)[0], acceleration(each)) for each in frictions]
+    tests = [{0: noisy(x, 0.0, rng), 2: noisy(a, 0.0, rng, level)} for x, a in clean]
+    found = noise_of_channels(tests, dict.fromkeys((0, 2), "relative"), [RATE] * 2)
+    for t, (_, a) in enumerate(clean):
+        ratio = found[t, 2](AT) / (level * a.std()) ** 2
+        assert 0.5 < ratio.min()
+        assert ratio.max() < 20.0  # up to 1,600 if jumps were taken out of the acceleration alone
+
+
 def test_a_level_may_differ_from_test_to_test():
     rng, clean = np.random.default_rng(3), [decay(0.04), decay(0.05)]
     levels = (0.002, 0.02)

@@ -57,8 +57,12 @@ class NoiseEvidence:
 
     @cached_property
     def own(self) -> dict[Key, OwnNoise]:
-        """Bins above the motion."""
-        return {(t, order): noise_bins(each) for t, its in self.tests.items() for order, each in its.items()}
+        """Bins above the motion; jumps of an acceleration would be there, too."""
+        return {
+            (t, order): noise_bins(continuous(each) if order == ACCELERATION else each)
+            for t, its in self.tests.items()
+            for order, each in its.items()
+        }
 
     @cached_property
     def quiet(self) -> dict[Key, NoiseBins]:
@@ -135,7 +139,7 @@ def noise_of_channels(tests: Sequence[Channels], of: Mapping[int, str], rates: S
     """
     found: Spectra = {}
     for rows in _sampled_alike(rates):
-        alike = {t: _smooth(tests[t]) for t in rows}
+        alike = {t: tests[t] for t in rows}
         orders = sorted({order for its in alike.values() for order in its})
         found |= NoiseEvidence(alike, {order: of[order] for order in orders}, rates[rows[0]]).most
     return found
@@ -148,11 +152,6 @@ def _sampled_alike(rates: Sequence[float]) -> list[list[int]]:
         alike = next((each for each in groups if abs(rate - each) < SAME_RATE * each), rate)
         groups.setdefault(alike, []).append(place)
     return list(groups.values())
-
-
-def _smooth(channels: Channels) -> Channels:
-    """Channels without the jumps of an acceleration."""
-    return {order: continuous(each) if order == ACCELERATION else each for order, each in channels.items()}
 
 
 def from_repeats(tests: Sequence[TestRecord], channels: Sequence[Channels]) -> Spectra:
