@@ -11,7 +11,7 @@ from wedgesweep.measured.clock import continued
 from wedgesweep.measured.declarations import MOTIONS, QUANTITIES
 from wedgesweep.measured.signals import stand_ins
 from wedgesweep.readers.survey import Column
-from wedgesweep.readers.table import DATETIME, OF_A_MATRIX
+from wedgesweep.readers.table import DATETIME, OF_A_MATRIX, split_unit
 from wedgesweep.units import DATES, DAY, EPOCH, FOREIGN, UNITS, angular, is_unit, usual
 
 FORCE, INPUT, TIME = "force", "input", "time"
@@ -36,6 +36,7 @@ SYMBOLS = {
 }
 # Words of what a rig stands on, of all that drives it, and of what it was told to do, or is of no use here.
 PLACES = r"base|ground|table|fuss|support|wall|side.?frame|axle|wheel|floor|foundation"
+FLOOR = r"floor"
 DRIVES = rf"input|excit|shaker|hammer|driv(er|ing)|exciter|source|anreg|{PLACES}"
 # A count of samples, which is no time.
 COUNTS = r"n|nr\.?|no\.?|#|index|samples?|points?|count(er)?|row|scan|sequence"
@@ -325,7 +326,7 @@ def _names(column: Column, quantity: str) -> bool:
     stem, symbol = STEMS.get(quantity, DRIVES), SYMBOLS[quantity]
     unit = unit_of(column, [TIME, *QUANTITIES]).lower()
     for words in [each for each in column.words if not is_unit(usual(each.strip(" ()[]")))] or column.words:
-        bare = BRACKETS.sub(" ", words).strip().lower()
+        bare = BRACKETS.sub(" ", split_unit(words)[0]).strip().lower()
         short = re.sub(r"[_\s]*\d*$", "", bare.removesuffix(f"_{unit}"))
         if re.search(stem, bare) or re.fullmatch(symbol, re.sub(r"^.*[./]", "", short)):
             return True
@@ -358,6 +359,8 @@ def _points(column: Column, quantity: str) -> float:
 def _by_name(columns: Sequence[Column]) -> dict[str, Column]:
     """Channels by names and units."""
     drives = [c for c in columns if _names(c, INPUT)]
+    # Of a building that stands on what is recorded, too, a floor is a mass.
+    drives = [c for c in drives if not re.search(FLOOR, c.label.lower())] or drives
     channels: dict[str, Column] = {}
     for quantity in (*MOTIONS, FORCE):
         found = _best(quantity, columns, drives, channels)

@@ -201,16 +201,20 @@ def _explained(tests: Sequence[_Moving], apart: bool = False) -> tuple[float, Nu
 def _not_negative(design: np.ndarray, force: np.ndarray) -> np.ndarray:
     """Factors >= 0 (k,) of acceleration, velocity, place and directions (n, k) that explain a force best.
 
-    At one frequency acceleration is opposite to place: then only the larger of inertia and spring shows.
+    At one frequency acceleration is opposite to place: then only the larger of inertia and spring shows,
+    unless both explain clearly more, as they do near a resonance, where they are nearly opposite.
     """
-    acceleration, place = design[:, 0], design[:, 2]
-    alike = abs(acceleration @ place) > ALIKE * force.size
-    fits, directions = [], range(3, design.shape[1])
-    for motions in ([1, 2], [0, 1]) if alike else ([0, 1, 2],):
-        used = [*motions, *directions]
+
+    def fit(*motions: int) -> tuple[float, np.ndarray]:
+        used = [*motions, *range(3, design.shape[1])]
         factors, left = nnls(design[:, used], force)
-        fits.append((left, np.bincount(used, factors, design.shape[1])))
-    return min(fits, key=lambda fit: fit[0])[1]
+        return left, np.bincount(used, factors, design.shape[1])
+
+    left, both = fit(0, 1, 2)
+    if abs(design[:, 0] @ design[:, 2]) <= ALIKE * force.size:
+        return both
+    left_by_one, one = min(fit(1, 2), fit(0, 1), key=lambda found: found[0])
+    return both if left < CLEARLY * left_by_one else one
 
 
 def _moving(test: TestRecord, load: float, restoring: Restoring, half_range: float = 0.0) -> _Moving:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from wedgesweep.hints import hint, show
-from wedgesweep.units import DAY
+from wedgesweep.units import DAY, is_unit, usual
 
 # A column by its name or by its number, from 1.
 Name = str | int
@@ -84,9 +84,14 @@ def place_of(name: Name, cells: Sequence[str]) -> int | None:
 
 
 def split_unit(header: str) -> tuple[str, str]:
-    """Name and unit of a header such as ``d [mm]``."""
+    """Name and unit of a header such as ``d [mm]``, ``d (mm)`` or ``d/mm``."""
     found = BRACKETS.fullmatch(header)
-    return (found[1].strip(), found[2].strip()) if found and found[1].strip() else (header, "")
+    if found and found[1].strip():
+        return found[1].strip(), found[2].strip()
+    name, _, unit = (part.strip() for part in header.partition("/"))
+    if name and is_unit(usual(unit)) and not is_unit(usual(header.strip())):
+        return name, unit
+    return header, ""
 
 
 def unit_and_name(words: Mapping[str, str]) -> tuple[str, str]:
