@@ -251,8 +251,13 @@ def test_tests_that_are_too_few_still_tell_the_best_explanations():
 def test_sentence_says_what_the_budget_left_out_and_whose_history_matters():
     document, data = fixture_diagnosis.build("none-of-mine")
     complete = told(document, data).removesuffix(".")
-    first = {"what": "pairs with one of the best single effects", "left_out": 60, "of": 76}
-    then = {"what": "forward selection", "left_out": 20, "of": 20}
+    first = {
+        "what": "pairs with one of the best single effects",
+        "left_out": 60,
+        "of": 76,
+        "ended_by": "budget",
+    }
+    then = {"what": "forward selection", "left_out": 20, "of": 20, "ended_by": "budget"}
     for untried, words in (
         ([first], f"before it tried {first['what']} (60 of 76)."),
         ([first, then], f"tried 80 more fits, first of all {first['what']} (60 of 76)."),
@@ -265,7 +270,15 @@ def test_sentence_says_what_the_budget_left_out_and_whose_history_matters():
     document["never_tried"] = [["ageing", "preload"], ["end_stop", "preload"]]
     singles = sum(len(each["effects"]) == 1 for each in document["candidates"])
     never = f"2 of the {singles * (singles - 1) // 2} possible pairs of effects were never tried"
-    assert f"{never} (ageing + preload, end_stop + preload)." in told(document, data)
+    pair = {**document["candidates"][0], "effects": ["preload", "stribeck"]}
+    for tried, words in (([pair], "alone or in the pairs that were tried"), ([], "alone; no pair was tried")):
+        rows = [*document["candidates"], *tried]
+        sentence = told({**document, "candidates": rows}, data)
+        assert f"{never} (ageing + preload, end_stop + preload)." in sentence
+        assert words in sentence
+    late = [{**first, "ended_by": "time limit"}]
+    assert "the search had no time left before it tried" in told({**document, "untried": late}, data)
+    del document["never_tried"]
     for names, words in ((["a"], "in 1 test (a)"), (list("abcd"), "in 4 tests (a, b and c, ...)")):
         sentence = told({**document, "never_steady": names}, data)
         assert sentence.startswith(f"{complete}; {words} friction keeps ageing")

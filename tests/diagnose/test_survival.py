@@ -132,7 +132,7 @@ def test_pairs_end_when_half_of_the_time_is_used_and_the_rest_is_done(bench, mon
     """Steps that are done stay as they are when a later one is interrupted."""
     monkeypatch.setattr(diagnosis, "recommend", raising(KeyboardInterrupt))
     found = diagnosis.diagnose(bench, CANDIDATES, time_used=lambda: 0.6)
-    assert found.unfinished == {"next test": "interrupted"}
+    assert found.unfinished == {"next test": "interrupted", "pairs": "time limit"}
     assert set(map(frozenset, found.never_tried)) == {frozenset(CANDIDATES)}
     assert all(level.best.held_out is not None for level in found.ladder)
     assert found.gain is not None

@@ -65,7 +65,7 @@ class Diagnosis:
 
     ``scores``: of every candidate effect. ``gain``: on held-out tests, None without an explanation.
     ``ladder``: accuracy by number of effects. ``calibration``: None unless thresholds were calibrated.
-    ``untried``: what the budget of the search left out; ``never_tried``: pairs of effects that were not
+    ``untried``: what the search left out; ``never_tried``: pairs of effects that were not
     fitted at all. ``unfinished``: steps without a result, with the reason; ``failed``: effects whose fits
     raised an error; ``ended``: the interrupt or time limit that ended the diagnosis early. ``changes``: what
     each stage changed; ``without``: stages that were left out; ``empirical``: the force that is missing where
@@ -142,10 +142,14 @@ class Course:
     def take(self, step: str, function: Callable[["Course"], Diagnosis]) -> None:
         """Take a step, which returns what is known after it; one that fails leaves its place empty."""
         self.search.progress(step)
-        unfinished = dict(self.found.unfinished)
+        unfinished, untried = dict(self.found.unfinished), self.search.budget.untried
+        already = len(untried)
         try:
             self.found = self.search.tried(step, self.found, lambda _: function(self))
-            del unfinished[step]
+            if any(each.ended_by == work.TIME_LIMIT for each in untried[already:]):
+                unfinished[step] = work.TIME_LIMIT
+            else:
+                del unfinished[step]
         except Exception as error:  # no step may take the results of the others with it
             log.debug(traceback.format_exc())
             self.search.progress(f"{step}: failed ({_described(error)}); the diagnosis goes on without")
@@ -158,7 +162,7 @@ class Course:
     def end(self, interrupt: KeyboardInterrupt) -> Diagnosis:
         """What is known where an interrupt or the time limit ends the diagnosis."""
         self._take_finished()
-        reason = "time limit" if isinstance(interrupt, work.OutOfTime) else "interrupted"
+        reason = work.TIME_LIMIT if isinstance(interrupt, work.OutOfTime) else "interrupted"
         unfinished = {
             step: reason if why == NOT_REACHED else why for step, why in self.found.unfinished.items()
         }

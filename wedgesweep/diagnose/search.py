@@ -120,7 +120,7 @@ class Search:
     def each_affordable(
         self, function: Callable[[Any], Any], items: Sequence[HasEffects], what: str
     ) -> list[Any]:
-        """Results for the items, the most promising first, until the budget is spent.
+        """Results for the items, the most promising first, until budget or time are over.
 
         ``what``: name of the stage, under which items that were left out are reported.
         """

@@ -70,6 +70,8 @@ Result = TypeVar("Result")
 
 # Share of a time limit after which nothing is added to a search: intervals and held-out tests take time, too.
 SEARCH_SHARE = 0.5
+# What ends a search before it has tried everything.
+SPENT, TIME_LIMIT = "budget", "time limit"
 
 
 class OutOfTime(KeyboardInterrupt):
@@ -98,6 +100,11 @@ _clock = _Clock()
 def time_used() -> Callable[[], float]:
     """The function that tells this thread which share of its time limit is used up."""
     return _clock.time_used
+
+
+def search_time_is_over() -> bool:
+    """Whether the time is over in which this thread may add something to a search."""
+    return time_used()() >= SEARCH_SHARE
 
 
 @contextmanager
@@ -154,12 +161,13 @@ def count(outcomes: Sequence[Uncounted[Result]]) -> None:
 
 
 class Untried(NamedTuple):
-    """What a search left out: how many of how many, and the effects of each."""
+    """What a search left out: how many of how many, the effects of each, and what ended it."""
 
     what: str
     left_out: int
     of: int
-    effects: tuple[tuple[str, ...], ...] = ()
+    effects: tuple[tuple[str, ...], ...]
+    ended_by: str
 
 
 @dataclass
@@ -168,7 +176,8 @@ class Budget:
 
     ``total``: in the unit of the clock; ``begun``: reading of the clock at which the budget began;
     ``told_before``: number of changes that were told before;
-    ``untried``: what the budget was too small for; ``tried``: combinations of effects that were fitted.
+    ``untried``: what the budget, or the time, was too small for; ``tried``: combinations of effects that were
+    fitted.
     """
 
     total: float = float("inf")
@@ -194,7 +203,8 @@ class Budget:
         """Record that the first ``count`` of some combinations of effects were tried, the others not."""
         self.tried.update(map(frozenset, effects[:count]))
         if count < len(effects):
-            self.untried.append(Untried(what, len(effects) - count, len(effects), tuple(effects[count:])))
+            left_out, why = tuple(effects[count:]), TIME_LIMIT if search_time_is_over() else SPENT
+            self.untried.append(Untried(what, len(left_out), len(effects), left_out, why))
 
     @property
     def never_tried(self) -> tuple[tuple[str, ...], ...]:

@@ -44,21 +44,22 @@ def _never_steady(result: DiagnosisResult) -> str:
 
 
 def _untried(result: DiagnosisResult) -> str:
-    """What the budget of the search left out, the most promising first; empty for most diagnoses."""
+    """What the search left out, the most promising first; empty for most diagnoses."""
     left_out = result.document.get("untried", [])
     if not left_out:
         return ""
     first = "{what} ({left_out} of {of})".format(**left_out[0])
     if len(left_out) > 1:
         first = f"{sum(each['left_out'] for each in left_out)} more fits, first of all {first}"
-    said = f"; the search had spent its budget before it tried {first}{_never_tried(result)}"
+    over = "had no time left" if left_out[0]["ended_by"] == "time limit" else "had spent its budget"
+    said = f"; the search {over} before it tried {first}{_never_tried(result)}"
     if result.reason is Reason.MORE_ACCURATE:
         said += "; the intervals hold if nothing of that is missing as well"
     return said
 
 
 def _never_tried(result: DiagnosisResult) -> str:
-    """The pairs of effects that the budget left out altogether."""
+    """The pairs of effects that were left out altogether."""
     never = result.document.get("never_tried", [])
     if not never:
         return ""
@@ -232,7 +233,15 @@ def _unexplained(result: DiagnosisResult) -> str:
         case 1:
             return "the only candidate does not explain it"
         case many:
-            return f"none of the {many} candidates explains it, alone or in pairs"
+            return f"none of the {many} candidates explains it, {_combinations(document)}"
+
+
+def _combinations(document: Mapping[str, Any]) -> str:
+    """In what combinations the candidates were tried."""
+    if not document.get("never_tried"):
+        return "alone or in pairs"
+    tried = any(len(each["effects"]) > 1 for each in document["candidates"])
+    return "alone or in the pairs that were tried" if tried else "alone; no pair was tried"
 
 
 def _attempt(result: DiagnosisResult) -> str:

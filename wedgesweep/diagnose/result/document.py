@@ -20,7 +20,7 @@ from wedgesweep.diagnose.repeats import Spread
 from wedgesweep.diagnose.result import missing_force
 from wedgesweep.diagnose.result.estimates import finite, parameters, uncertain, widen
 from wedgesweep.diagnose.verdict import GAP, LARGER, Finding, p_where_it_shows
-from wedgesweep.diagnose.work import SLIGHT, OutOfTime, summary
+from wedgesweep.diagnose.work import SLIGHT, TIME_LIMIT, OutOfTime, summary
 from wedgesweep.diagnosis_result import FAILED, NO_BETTER
 from wedgesweep.effects import EFFECTS
 
@@ -52,7 +52,10 @@ def document(found: Diagnosis) -> dict[str, Any]:
         "empirical_force": missing_force.document(found.empirical),
         "extended": list(best.effects),
         "never_steady": _never_steady(best),
-        "untried": [{"what": each.what, "left_out": each.left_out, "of": each.of} for each in found.untried],
+        "untried": [
+            {"what": each.what, "left_out": each.left_out, "of": each.of, "ended_by": each.ended_by}
+            for each in found.untried
+        ],
         "never_tried": [list(each) for each in found.never_tried],
         "unfinished": [{"step": step, "reason": why} for step, why in found.unfinished.items()],
         "stages": summary(found.changes),
@@ -77,12 +80,10 @@ def document(found: Diagnosis) -> dict[str, Any]:
 
 
 def _ended(found: Diagnosis) -> dict[str, Any] | None:
-    """What ended the diagnosis early: the time limit, or a signal by its number."""
-    if found.ended is None:
-        return None
-    if isinstance(found.ended, OutOfTime):
-        return {"by": "time limit", "signal": None}
-    return {"by": "interrupt", "signal": int(getattr(found.ended, "number", SIGINT))}
+    """What ended the diagnosis, or its search, early: the time limit, or a signal by its number."""
+    if found.ended is not None and not isinstance(found.ended, OutOfTime):
+        return {"by": "interrupt", "signal": int(getattr(found.ended, "number", SIGINT))}
+    return {"by": TIME_LIMIT, "signal": None} if TIME_LIMIT in found.unfinished.values() else None
 
 
 def _surface(model: Config) -> dict[str, Any]:
