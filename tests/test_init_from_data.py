@@ -892,6 +892,19 @@ def test_a_force_that_drifts_and_a_wrong_unit_of_time_are_told(tmp_path):
     )
 
 
+def test_a_delay_of_a_force_beside_a_damper_is_told(tmp_path):
+    """A mass below zero would explain it as well."""
+    late, random, files = 0.005, np.random.default_rng(1), []
+    for rate in (0.5, 1.0, 2.0):
+        t, omega = np.arange(0.0, 8.0 / rate, 0.002), 2.0 * np.pi * rate
+        force = 400.0 * np.sin(omega * (t - late)) + 12.0 * omega * np.cos(omega * (t - late))
+        columns = t, 20.0 * np.sin(omega * t), force + random.normal(size=t.size)
+        files.append(text(tmp_path / f"{rate}.csv", *columns, header="t (s),d (mm),F (N)"))
+    (warning,) = consistency.warnings(begun(tmp_path, *files))
+    told = re.search(r"delay_ms = (\S+) at force", warning)
+    assert float(told[1]) == pytest.approx(1e3 * late, rel=0.05)
+
+
 def test_a_force_that_was_clipped_does_not_count(tmp_path):
     """But one as flat as friction alone, without noise, does."""
     t, d, f = loop()

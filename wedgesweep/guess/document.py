@@ -172,8 +172,11 @@ def _with_time(test: Guessed) -> dict[str, Chosen]:
 
 def model(found: Numbers, forced: bool, turns: bool) -> str:
     """Text of a config: a mass on a spring, or what turns on one."""
+    unknown = "no record shows it: state what you know"
+    if not forced:
+        unknown += ", and multiply spring, damper and friction by it"
     notes = {
-        "mass": "no record shows it: state what you know" if "mass" in found.unseen else "by the record",
+        "mass": unknown if "mass" in found.unseen else "by the record",
         "damping": "the diagnosis tells what damps it" if "damping" in found.unseen else "by the record",
     }
     size = f"{found.friction:.3g} {'N m' if turns else 'N'}"

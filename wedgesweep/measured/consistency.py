@@ -5,6 +5,7 @@ from functools import partial
 from math import log, nan, sqrt
 
 import numpy as np
+from scipy.optimize import nnls
 from scipy.signal import butter, sosfiltfilt
 
 from wedgesweep.measured.cycles import cut
@@ -193,11 +194,10 @@ def _of_samples(time: np.ndarray, parts: np.ndarray, force: np.ndarray, period: 
 
 
 def _unexplained(rows: Sequence[Rows]) -> float:
-    """Share (rms) of the forces that one mass, spring, damper and friction leave."""
+    """Share (rms) of the forces that a mass, spring, damper and friction leave; a negative mass is a delay."""
     design, force = np.vstack([row[0] for row in rows]), np.concatenate([row[1] for row in rows])
-    design = design / np.maximum(np.linalg.norm(design, axis=0), TINY)
-    left = force - design @ np.linalg.lstsq(design, force, rcond=None)[0]
-    return float(np.linalg.norm(left) / max(float(np.linalg.norm(force)), TINY))
+    _, left = nnls(design / np.maximum(np.linalg.norm(design, axis=0), TINY), force)
+    return float(left / max(float(np.linalg.norm(force)), TINY))
 
 
 def _shape_warnings(tests: Sequence[TestRecord]) -> list[str]:
