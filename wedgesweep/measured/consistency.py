@@ -194,7 +194,7 @@ def _of_samples(time: np.ndarray, parts: np.ndarray, force: np.ndarray, period: 
 
 
 def _unexplained(rows: Sequence[Rows]) -> float:
-    """Share (rms) of the forces that a mass, spring, damper and friction leave; a negative mass is a delay."""
+    """Share (rms) of forces that a mass, spring, damper and friction leave; a negative mass is a delay."""
     design, force = np.vstack([row[0] for row in rows]), np.concatenate([row[1] for row in rows])
     _, left = nnls(design / np.maximum(np.linalg.norm(design, axis=0), TINY), force)
     return float(left / max(float(np.linalg.norm(force)), TINY))
