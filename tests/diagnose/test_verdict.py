@@ -517,3 +517,6 @@ def test_elastic_friction_is_rated_where_it_clearly_surpasses_rigid_friction(ela
         other = rated(elastic, "maxwell_presliding", *others)
         found = ladder._surpassing_limits([rigid, other])
         assert found == ([rigid, other] if kept else [rigid])
+        # It stays where something of another kind is worse than it, and better than its limit.
+        between = rated(0.045, "degressive_damping", *others)
+        assert other in ladder._surpassing_limits([rigid, other, between])

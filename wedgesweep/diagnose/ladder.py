@@ -95,15 +95,26 @@ def rough_ladder(search: Search, base: Fit, explanations: Sequence[Fit]) -> tupl
 
 
 def _surpassing_limits(rated: Sequence[Rated]) -> list[Rated]:
-    """Explanations without those that hardly gain on one with a limit of an effect in its place."""
+    """Explanations without those that hardly gain on one with a limit of an effect in its place.
+
+    They stay where something of another kind lies between both, which would profit from their absence.
+    """
     accuracies = {frozenset(each.effects): each.accuracy for each in rated}
 
-    def hardly(each: Rated) -> bool:
+    def of_limit(each: Rated) -> float:
+        """Accuracy of the best explanation with a limit in the place of an effect."""
         effects = frozenset(each.effects)
         simpler = (effects - {name} | {limit} for name in effects for limit in EFFECTS[name].limits)
-        return any(accuracies.get(one, inf) < verdict.CLEAR * each.accuracy for one in simpler)
+        return min((accuracies.get(one, inf) for one in simpler), default=inf)
 
-    return [each for each in rated if not hardly(each)]
+    hardly = [each for each in rated if of_limit(each) < verdict.CLEAR * each.accuracy]
+    others = [each for each in rated if each not in hardly]
+
+    def in_front(each: Rated) -> bool:
+        alike = (one.accuracy for one in others if len(one.effects) == len(each.effects))
+        return any(each.accuracy < accuracy < of_limit(each) for accuracy in alike)
+
+    return [each for each in rated if each not in hardly or in_front(each)]
 
 
 def ladder(search: Search, base: Fit, explanations: Sequence[Fit], predict: Predictor) -> tuple[Level, ...]:
