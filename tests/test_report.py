@@ -9,6 +9,7 @@ import pytest
 
 from tests import browser, fixture_diagnosis
 from wedgesweep import diagnosis_result, formatting, report, rotation
+from wedgesweep.config.model import NO_FRICTION
 from wedgesweep.diagnosis_result import VERDICTS, DiagnosisResult
 from wedgesweep.effects import EFFECTS
 from wedgesweep.errors import InputError, SweepError
@@ -282,6 +283,15 @@ def test_sentence_says_what_the_budget_left_out_and_whose_history_matters():
     for names, words in ((["a"], "in 1 test (a)"), (list("abcd"), "in 4 tests (a, b and c, ...)")):
         sentence = told({**document, "never_steady": names}, data)
         assert sentence.startswith(f"{complete}; {words} friction keeps ageing")
+
+
+def test_sentence_says_what_was_not_tried_because_the_model_lacks_friction():
+    document, data = fixture_diagnosis.build("none-of-mine")
+    why = dict.fromkeys(("friction_level", "stribeck", "ageing"), NO_FRICTION)
+    words = "stribeck and ageing were not tried, as they change friction, and the model has none"
+    leading = [document["ladder"][0], {**document["ladder"][1], "effects": ["guide_friction"]}]
+    for levels, excluded, told_so in ((leading, why, True), (leading, {}, False), ([], why, False)):
+        assert (words in told({**document, "ladder": levels, "excluded": excluded}, data)) == told_so
 
 
 def test_few_candidates_are_described_in_words():

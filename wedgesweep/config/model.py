@@ -32,6 +32,8 @@ from wedgesweep.systems.suspension import parameters as suspension
 
 # Records of models that are kept (900 bytes each).
 MOST_KEPT = 4096
+# Why an effect is no candidate, which a report tells where friction is what is missing.
+NO_FRICTION = "changes friction, and the model has none"
 
 
 @dataclass(frozen=True)
@@ -147,7 +149,7 @@ class Config:
             # Some show beside friction that may be missing. In runs their simulation would take too long.
             beside = [name for name in oscillator.OF_FRICTION if loops and EFFECTS[name].acts_on]
             alone = [name for name in oscillator.OF_FRICTION if name not in beside]
-            yield alone, "changes friction, and the model has none"
+            yield alone, NO_FRICTION
         if not (rubs and loads_differ):
             yield (oscillator.OF_LOAD,), "shows only where the normal force differs from test to test"
         if self.oscillator["spring"] == 0.0:

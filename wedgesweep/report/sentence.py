@@ -4,7 +4,10 @@ from collections.abc import Mapping
 from typing import Any
 
 from wedgesweep import formatting, rotation
+from wedgesweep.config.model import NO_FRICTION
 from wedgesweep.diagnosis_result import DiagnosisResult, Reason
+from wedgesweep.effects import EFFECTS
+from wedgesweep.effects.guide_friction import EFFECT as GUIDE_FRICTION
 from wedgesweep.report import ladder, phrases
 
 # Tests that a sentence names.
@@ -15,7 +18,15 @@ def sentence(result: DiagnosisResult) -> str:
     """Return the sentence as plain text; each verdict has its template."""
     answer = TEMPLATES[result.verdict](result).removesuffix(".")
     repeats = f"; {parts}" if (parts := ladder.parts(result)) else ""
-    whole = answer + repeats + _never_steady(result) + _untried(result) + unfinished(result) + "."
+    whole = (
+        answer
+        + repeats
+        + _of_friction(result)
+        + _never_steady(result)
+        + _untried(result)
+        + unfinished(result)
+        + "."
+    )
     return rotation.prose(whole) if phrases.turns(result.document) else whole
 
 
@@ -27,6 +38,18 @@ def unfinished(result: DiagnosisResult) -> str:
     for each in result.document.get("failed", []):
         steps.setdefault(each["reason"], []).append(f"fit of {each['effect']}")
     return "".join(f"; unfinished: {phrases.listing(names)} ({why})" for why, names in steps.items())
+
+
+def _of_friction(result: DiagnosisResult) -> str:
+    """Effects that were not tried as the model has no friction, where that is what leads; else empty."""
+    leads = any(GUIDE_FRICTION.name in level["effects"] for level in ladder.noteworthy(result))
+    excluded = result.document.get("excluded", {}).items()
+    names = [name for name, why in excluded if why == NO_FRICTION and EFFECTS[name].family != "parameters"]
+    if result.verdict == "named" or not (leads and names):
+        return ""
+    they = "it changes" if len(names) == 1 else "they change"
+    why = f"as {they} friction, and the model has none: state it there to try them"
+    return f"; {phrases.listing(names)} {'was' if len(names) == 1 else 'were'} not tried, {why}"
 
 
 def _never_steady(result: DiagnosisResult) -> str:
