@@ -18,15 +18,8 @@ def sentence(result: DiagnosisResult) -> str:
     """Return the sentence as plain text; each verdict has its template."""
     answer = TEMPLATES[result.verdict](result).removesuffix(".")
     repeats = f"; {parts}" if (parts := ladder.parts(result)) else ""
-    whole = (
-        answer
-        + repeats
-        + _of_friction(result)
-        + _never_steady(result)
-        + _untried(result)
-        + unfinished(result)
-        + "."
-    )
+    not_done = _of_friction(result) + _never_steady(result) + _untried(result) + unfinished(result)
+    whole = f"{answer}{repeats}{not_done}."
     return rotation.prose(whole) if phrases.turns(result.document) else whole
 
 
