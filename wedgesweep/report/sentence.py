@@ -67,7 +67,7 @@ def _untried(result: DiagnosisResult) -> str:
     first = "{what} ({left_out} of {of})".format(**left_out[0])
     if len(left_out) > 1:
         first = f"{sum(each['left_out'] for each in left_out)} more fits, first of all {first}"
-    over = "had no time left" if left_out[0]["ended_by"] == "time limit" else "had spent its budget"
+    over = "had no time left" if left_out[0].get("ended_by") == "time limit" else "had spent its budget"
     said = f"; the search {over} before it tried {first}{_never_tried(result)}"
     if result.reason is Reason.MORE_ACCURATE:
         said += "; the intervals hold if nothing of that is missing as well"
