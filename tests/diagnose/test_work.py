@@ -36,6 +36,7 @@ def test_what_is_affordable_does_not_depend_on_which_thread_is_faster(threads):
     assert search.each_affordable(worked, items[:2], "more numbers") == []
     assert search.each(worked, items[:2]) == items[:2]
     assert [each[:3] for each in search.budget.untried] == [("numbers", 5, 8), ("more numbers", 2, 2)]
+    assert {each.ended_by for each in search.budget.untried} == {work.SPENT}
     # What was left out once and tried another time was tried.
     assert search.budget.never_tried == tuple(item.effects for item in items[3:])
 

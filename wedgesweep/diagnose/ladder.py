@@ -110,11 +110,11 @@ def _surpassing_limits(rated: Sequence[Rated]) -> list[Rated]:
     hardly = [each for each in rated if of_limit(each) < verdict.CLEAR * each.accuracy]
     others = [each for each in rated if each not in hardly]
 
-    def in_front(each: Rated) -> bool:
+    def others_between(each: Rated) -> bool:
         alike = (one.accuracy for one in others if len(one.effects) == len(each.effects))
         return any(each.accuracy < accuracy < of_limit(each) for accuracy in alike)
 
-    return [each for each in rated if each not in hardly or in_front(each)]
+    return [each for each in rated if each not in hardly or others_between(each)]
 
 
 def ladder(search: Search, base: Fit, explanations: Sequence[Fit], predict: Predictor) -> tuple[Level, ...]:

@@ -102,11 +102,6 @@ def time_used() -> Callable[[], float]:
     return _clock.time_used
 
 
-def search_time_is_over() -> bool:
-    """Whether the time is over in which this thread may add something to a search."""
-    return time_used()() >= SEARCH_SHARE
-
-
 @contextmanager
 def limited(used: Callable[[], float]) -> Iterator[None]:
     """A time limit for the simulations of this thread; ``used`` returns the share that is used up."""
@@ -200,10 +195,13 @@ class Budget:
         self.total = max(self.total, done() - self.begun + work)
 
     def ended(self, what: str, count: int, effects: Sequence[tuple[str, ...]]) -> None:
-        """Record that the first ``count`` of some combinations of effects were tried, the others not."""
+        """Record that the first ``count`` of some combinations of effects were tried, the others not.
+
+        If work is left, it was the time that ended the search.
+        """
         self.tried.update(map(frozenset, effects[:count]))
         if count < len(effects):
-            left_out, why = tuple(effects[count:]), TIME_LIMIT if search_time_is_over() else SPENT
+            left_out, why = tuple(effects[count:]), TIME_LIMIT if self.left > 0.0 else SPENT
             self.untried.append(Untried(what, len(left_out), len(effects), left_out, why))
 
     @property

@@ -36,7 +36,6 @@ SYMBOLS = {
 }
 # Words of what a rig stands on, of all that drives it, and of what it was told to do, or is of no use here.
 PLACES = r"base|ground|table|fuss|support|wall|side.?frame|axle|wheel|floor|foundation"
-FLOOR = r"floor"
 DRIVES = rf"input|excit|shaker|hammer|driv(er|ing)|exciter|source|anreg|{PLACES}"
 # A count of samples, which is no time.
 COUNTS = r"n|nr\.?|no\.?|#|index|samples?|points?|count(er)?|row|scan|sequence"
@@ -360,7 +359,7 @@ def _by_name(columns: Sequence[Column]) -> dict[str, Column]:
     """Channels by names and units."""
     drives = [c for c in columns if _names(c, INPUT)]
     # Of a building that stands on what is recorded, too, a floor is a mass.
-    drives = [c for c in drives if not re.search(FLOOR, c.label.lower())] or drives
+    drives = [c for c in drives if "floor" not in c.label.lower()] or drives
     channels: dict[str, Column] = {}
     for quantity in (*MOTIONS, FORCE):
         found = _best(quantity, columns, drives, channels)

@@ -82,8 +82,10 @@ class _Placed:
 
     def long_gaps(self) -> np.ndarray:
         """Indices of the samples before gaps that are too long to be filled."""
-        bound, noise = MOST_ERROR * float(self.signal.samples.std()), self.time.size * self.error(1) ** 2
         gaps = self.clock.gaps
+        if not gaps.any():
+            return np.flatnonzero(gaps)
+        bound, noise = MOST_ERROR * float(self.signal.samples.std()), self.time.size * self.error(1) ** 2
         errors = {lost: self.error(lost) for lost in np.unique(gaps[gaps > 0]).tolist()}
         added = {lost: gaps[gaps == lost].sum() * error**2 for lost, error in errors.items()}
         long = [lost for lost in errors if errors[lost] > bound and added[lost] > ADDED * noise]
