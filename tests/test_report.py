@@ -285,6 +285,15 @@ def test_sentence_says_what_the_budget_left_out_and_whose_history_matters():
         assert sentence.startswith(f"{complete}; {words} friction keeps ageing")
 
 
+@pytest.mark.usefixtures("no_figures")
+def test_a_next_test_that_was_not_looked_for_is_told_as_such(tmp_path):
+    document, _ = fixture_diagnosis.write(tmp_path, "data-insufficient")
+    unfinished = [{"step": "next test", "reason": "time limit"}]
+    for steps, times in ((unfinished, 2), ([], 0)):
+        page = page_of(tmp_path, {**document, "next_test": None, "unfinished": steps}).text
+        assert page.count("The diagnosis ended before it looked for the next test.") == times
+
+
 def test_sentence_says_what_was_not_tried_because_the_model_lacks_friction():
     document, data = fixture_diagnosis.build("none-of-mine")
     why = dict.fromkeys(("friction_level", "stribeck", "ageing"), NO_FRICTION)

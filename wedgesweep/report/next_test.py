@@ -9,8 +9,15 @@ from wedgesweep.report.html import Markup
 def section(result: DiagnosisResult) -> Markup:
     """Section with the recommended test, or the reason why there is none."""
     test = result.document["next_test"]
-    content = html.paragraph(NOTHING_TO_MEASURE[result.verdict]) if test is None else _recommended(result)
+    content = html.paragraph(nothing_to_measure(result)) if test is None else _recommended(result)
     return html.section("next", "What to measure next", content)
+
+
+def nothing_to_measure(result: DiagnosisResult) -> str:
+    """Why no test is recommended."""
+    if any(each["step"] == "next test" for each in result.document.get("unfinished", [])):
+        return "The diagnosis ended before it looked for the next test."
+    return NOTHING_TO_MEASURE[result.verdict]
 
 
 def _recommended(result: DiagnosisResult) -> Markup:

@@ -62,7 +62,7 @@ def table(result: DiagnosisResult) -> Markup:
         rows.append(["gain on held-out tests", Spanning(removed)])
     if result.verdict == "none-of-mine":
         rows += [_nearly(level, result) for level in ladder.noteworthy(result)]
-    step = next_test.NOTHING_TO_MEASURE[result.verdict]
+    step = next_test.nothing_to_measure(result)
     rows.append(["next step", Spanning(step if test is None else phrases.next_test(test))])
     return html.table("Error of the model", head, rows)
 
