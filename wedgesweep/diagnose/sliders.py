@@ -12,12 +12,12 @@ ELONGATIONS = np.geomspace(0.003, 0.6, 24)
 
 def forces(displacement: np.ndarray, half_range: float) -> np.ndarray:
     """Forces (k, n) over those at which they slip; none at the start."""
-    found = np.empty((displacement.size, ELONGATIONS.size))
-    force, elongation = np.zeros(ELONGATIONS.size), half_range * ELONGATIONS
-    for i, step in enumerate(np.diff(displacement, prepend=displacement[0])):
-        force = np.clip(force + step / elongation, -1.0, 1.0)
-        found[i] = force
-    return found.T
+    force = np.diff(displacement, prepend=displacement[0])[:, None] / (half_range * ELONGATIONS)
+    before = np.zeros(ELONGATIONS.size)
+    for now in force:
+        now += before
+        before = np.minimum(np.maximum(now, -1.0, out=now), 1.0, out=now)
+    return force.T
 
 
 def known(displacement: np.ndarray, half_range: float) -> np.ndarray:

@@ -122,9 +122,10 @@ def _search(cycles: Cycles, reach: float) -> float:
     fine = 1.0 / (8.0 * span * cycles.orders[-1])
     changes = np.arange(-reach, reach + fine, fine)
     turns = np.exp(-2j * pi * np.outer(changes, cycles.times))
-    power = np.zeros(changes.size)
-    for order, harmonic in zip(cycles.orders.tolist(), cycles.harmonics.T, strict=True):
-        power += np.abs(turns**order @ harmonic) ** 2
+    power, turned = np.zeros(changes.size), np.ones_like(turns)
+    for harmonic in cycles.harmonics.T:  # of the orders 1, 2, ...
+        turned *= turns
+        power += np.abs(turned @ harmonic) ** 2
     return float(changes[power.argmax()])
 
 
