@@ -143,6 +143,7 @@ def test_a_test_in_which_a_wedge_locks_is_refused(tmp_path, plan, effects, messa
     assert not out.exists()
 
 
+@pytest.mark.acceptance
 def test_the_lag_of_a_velocity_channel_is_that_of_the_motion_between_the_samples_too():
     # A mass on a spring, released at rest; the lag, tau y' = v - y from y = 0, is as long as a sample.
     omega, travel, rate, lag = 250.0**0.5, 0.01, 50.0, 0.02

@@ -99,6 +99,7 @@ def test_the_error_of_interpolation_is_what_is_told(jitter, lost):
         assert 0.25 < 100.0 * error / float(told[0]) < 4.0
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("per_swing", [15, 30, 60])
 @pytest.mark.parametrize("jitter", [0.1, 0.3])
 def test_the_noise_of_a_record_holds_the_error_of_interpolation(per_swing, jitter):

@@ -83,9 +83,11 @@ def siconos_is_there():
     return PYTHON.exists() and subprocess.run(command, capture_output=True, check=False).returncode == 0
 
 
-@pytest.mark.skipif(not siconos_is_there(), reason="needs Debian's python3-siconos")
+@pytest.mark.acceptance
 def test_time_stepping_of_free_bodies_finds_the_same_motion(tmp_path):
     """At one step length; ``scripts/compare_siconos.py`` lets it go to zero."""
+    if not siconos_is_there():
+        pytest.skip("needs Debian's python3-siconos")
     window = {"restitution": 0.0, "settle": SETTLE, "keep": 2, "steps": STEPS}
     given = json.dumps(
         [{"beta": beta, "amplitude": size, "preload": preload, **window} for beta, size, preload in CASES]
