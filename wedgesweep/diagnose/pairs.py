@@ -15,6 +15,7 @@ import numpy as np
 from wedgesweep.diagnose import verdict
 from wedgesweep.diagnose.evaluation import Evaluation
 from wedgesweep.diagnose.explanation import best_of_each, penalised
+from wedgesweep.diagnose.fit_parameters import Values
 from wedgesweep.diagnose.least_squares import minimise, subset_fit
 from wedgesweep.diagnose.model import ROUGH, Fit, unfitted
 from wedgesweep.diagnose.search import LEADING, Round, Scans, Search
@@ -170,15 +171,23 @@ def _complete(search: Search, base: Fit, singles: Mapping[str, SingleScan], subs
     return found
 
 
-def components(search: Search, pair: Fit) -> list[Fit]:
-    """Either effect of a pair by itself, from its parameters in the pair.
+def simpler(search: Search, pair: Fit) -> list[Fit]:
+    """Either effect of a pair by itself, and the pair with a special case of one, from the pair's numbers.
 
-    A pair whose other effect does nothing reveals a minimum that the single fit had missed.
+    A pair whose other effect does nothing, or nothing beyond its special case, reveals a minimum that these
+    fits had missed.
     """
+    values = pair.values
+    begun = [{effect: values[effect]} for effect in pair.effects]
+    for effect, other in (pair.effects, pair.effects[::-1]):
+        for special in EFFECTS[effect].contains:
+            keys = {quantity.key for quantity in EFFECTS[special].quantities if quantity.search}
+            if special in search.effects and special != other and keys <= values[effect].keys():
+                begun.append({special: values[effect], other: values[other]})
 
-    def alone(effect: str) -> Fit:
-        model = search.model(effect)
-        start = model.start(pair, model.hypothesis.at(pair.values))
+    def followed(numbers: Values) -> Fit:
+        model = search.model(*numbers)
+        start = model.start(pair, model.hypothesis.at(numbers))
         return minimise(model, model.evaluate(start))
 
-    return search.each(alone, pair.effects)
+    return search.each(followed, begun)

@@ -13,7 +13,7 @@ from wedgesweep.diagnose.explanation import NOTABLE, penalised
 from wedgesweep.diagnose.fit_data import FitData
 from wedgesweep.diagnose.least_squares import BRIEF, minimise
 from wedgesweep.diagnose.model import Fit
-from wedgesweep.diagnose.pairs import components, fit_pairs
+from wedgesweep.diagnose.pairs import fit_pairs, simpler
 from wedgesweep.diagnose.search import (
     LEADING,
     PAIRS_SHARE,
@@ -60,8 +60,8 @@ def _pairs(known: Explained) -> Explained:
     return known.joined(fit_pairs(search, base, found, scans))
 
 
-def _components(known: Explained) -> Explained:
-    return known.joined(components(known.search, known.explanations[0]))
+def _simpler(known: Explained) -> Explained:
+    return known.joined(simpler(known.search, known.explanations[0]))
 
 
 def _with_renewed_covariance(explained: Explained) -> Explained:
@@ -113,7 +113,7 @@ REFINEMENT = (
 PAIRS = (
     Stage("beyond range", followed_beyond, _inadequate),
     Stage("best pairs", _pairs, _for_pairs),
-    Stage("components", _components, _pair_leads),
+    Stage("simpler", _simpler, _pair_leads),
     Stage("base model at last", refit_base),
     Stage("covariance renewed again", _with_renewed_covariance),
 )
