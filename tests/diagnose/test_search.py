@@ -177,7 +177,7 @@ def test_where_responses_do_not_add_the_second_effect_begins_with_nothing():
 def fits(*misfits, p):
     """Stand-ins of fits to several pairs; ``p``: probability of the best one's misfit."""
     return [
-        SimpleNamespace(chi2=q, p=p if q == min(misfits) else 0.0, effects=(str(i), "other"))
+        SimpleNamespace(chi2=q, dof=50, p=p if q == min(misfits) else 0.0, effects=(str(i), "other"))
         for i, q in enumerate(misfits)
     ]
 

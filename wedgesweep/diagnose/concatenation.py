@@ -138,6 +138,7 @@ class Concatenation(FitData):
     bootstrap_sample = _renewing("bootstrap_sample")
     with_undetected = _renewing("with_undetected")
     aligned_to = _renewing("aligned_to")
+    beginning = _renewing("beginning")
     renewed = _renewing("renewed")
     held_as_stated = _renewing("held_as_stated")
 

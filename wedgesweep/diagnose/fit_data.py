@@ -151,6 +151,10 @@ class FitData(Protocol):
     def subset(self, rows: np.ndarray) -> Self:
         """The same data with some of the tests."""
 
+    def beginning(self, share: float) -> Self:
+        """The first part of each test, a share of it; all of it where fits find their way without that."""
+        return self
+
     @abstractmethod
     def compare(self, scenarios: Sequence[Scenario], tolerance: float) -> list[Comparison]:
         """Simulate scenarios and compare each with the measurement, eliminated nuisances at their best.

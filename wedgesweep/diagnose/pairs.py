@@ -16,7 +16,7 @@ from wedgesweep.diagnose import verdict
 from wedgesweep.diagnose.evaluation import Evaluation
 from wedgesweep.diagnose.explanation import best_of_each, penalised
 from wedgesweep.diagnose.fit_parameters import Values
-from wedgesweep.diagnose.least_squares import minimise, subset_fit
+from wedgesweep.diagnose.least_squares import BEGINNINGS, grown, minimise, of_beginnings, subset_fit
 from wedgesweep.diagnose.model import ROUGH, Fit, unfitted
 from wedgesweep.diagnose.search import LEADING, Round, Scans, Search
 from wedgesweep.diagnose.work import SLIGHT
@@ -26,6 +26,8 @@ from wedgesweep.effects import EFFECTS, go_together
 STARTS = 2
 # Rounds on the subset of tests; the LEADING pairs are then fitted to all tests.
 ROUNDS = (Round(None, 1), Round(40, 2), Round(40, 5))
+# Share of each of these tests that counts in each round: weak friction shows at the end of a release only.
+SHARES = (*BEGINNINGS, 1.0)
 # Once a pair is adequate, pairs with this many times its misfit are dropped, but never SEVERAL of the best.
 # A start of a pair is poor if its misfit is this many times that of the first effect by itself.
 BEHIND, SEVERAL = 5.0, 4
@@ -81,18 +83,22 @@ def fit_pairs(search: Search, base: Fit, singles: Sequence[Fit], scans: Scans) -
     useful = [each for each in both if each.shows and go_together(each.effects)]
     begun = search.each_affordable(lambda each: starting_fit(search, each), useful, PAIRS)
     fits = [fit for fit in begun if np.isfinite(fit.chi2)]
-    for entering, iterations in ROUNDS:
-        fits = _continued(search, promising(fits)[:entering], iterations)
+    for (entering, iterations), share in zip(ROUNDS, SHARES, strict=True):
+        fits = _continued(search, known, promising(fits)[:entering], iterations, share)
     completed = SEVERAL if search.budget.left <= 0.0 else LEADING
     found = search.each(lambda fit: _complete(search, base, known, fit), promising(fits)[:completed])
     return best_of_each(found, penalised)
 
 
-def _continued(search: Search, fits: Sequence[Fit], iterations: int) -> list[Fit]:
-    """Fits, the best first, continued for some iterations; as they are once the budget is spent."""
+def _continued(
+    search: Search, known: Mapping[str, SingleScan], fits: Sequence[Fit], iterations: int, share: float
+) -> list[Fit]:
+    """Fits, the best first, continued on a share of their tests; as they are once the budget is spent."""
 
     def followed(fit: Fit) -> Fit:
-        return minimise(fit.model, fit.evaluation, iterations)
+        model = of_beginnings(fit.model.on(known[fit.effects[0]].subset.model.data), share)
+        same = model.data is fit.model.data
+        return minimise(model, fit.evaluation if same else model.evaluate(fit.point), iterations)
 
     found = search.each_affordable(followed, fits, f"{PAIRS}, followed further")
     return [*found, *fits[len(found) :]]
@@ -100,11 +106,16 @@ def _continued(search: Search, fits: Sequence[Fit], iterations: int) -> list[Fit
 
 def promising(fits: Sequence[Fit]) -> list[Fit]:
     """The best fit of each pair, best first, without those far behind an adequate one."""
-    found = best_of_each(fits, lambda fit: fit.chi2)
+    found = best_of_each(fits, _per_freedom)
     if not found or found[0].p < verdict.ADEQUATE:
         return found
-    near = [fit for fit in found if fit.chi2 < BEHIND * found[0].chi2]
+    near = [fit for fit in found if _per_freedom(fit) < BEHIND * _per_freedom(found[0])]
     return found[: max(len(near), SEVERAL)]
+
+
+def _per_freedom(fit: Fit) -> float:
+    """Misfit by which fits to longer and shorter parts of tests compare."""
+    return fit.chi2 / max(fit.dof, 1)
 
 
 def _worst_tests(fit: Fit) -> Fit:
@@ -140,7 +151,9 @@ def starting_fit(search: Search, combination: Combination) -> Fit:
     """The fit of a combination on a subset of the tests, before its first iteration."""
     fit, subset, second = combination.first.fit, combination.first.subset, combination.second
     model = search.model(*combination.effects, tolerance=ROUGH)
-    model = model.on(subset.model.data)
+    model = of_beginnings(model.on(subset.model.data), SHARES[0])
+    alone = of_beginnings(subset.model, SHARES[0])
+    alone_chi2 = subset.chi2 if alone is subset.model else alone.evaluate(subset.point).chi2
     first_x = fit.x[: fit.model.size]
 
     def best(points: np.ndarray) -> Evaluation:
@@ -148,7 +161,7 @@ def starting_fit(search: Search, combination: Combination) -> Fit:
         return min(evaluations, key=lambda each: each.chi2)
 
     start = best(_starts(fit, second))
-    if start.chi2 > BEHIND * subset.chi2:
+    if start.chi2 > BEHIND * alone_chi2:
         # Responses do not add where a test sticks that had slid; a weak effect leaves them as they are.
         weakest = second.x[np.argmin((second.changes**2).sum(1))]
         neutral = best(second.fit.model.hypothesis.near_neutral(weakest)[None])
@@ -159,14 +172,15 @@ def starting_fit(search: Search, combination: Combination) -> Fit:
 def _complete(search: Search, base: Fit, singles: Mapping[str, SingleScan], subset: Fit) -> Fit:
     """A fit to all tests, from the end of a fit to a subset of them.
 
-    Nuisance parameters of each test start as in the base fit or in the fit of one of the effects by itself,
-    whichever fits this test best.
+    Nuisance parameters of each test start as in the base fit, as in the fit of one of the effects by itself,
+    or as stated, whichever fits the beginning of this test best.
     """
     model = search.model(*subset.effects)
-    known = [base, *(singles[effect].fit for effect in subset.effects)]
+    known = [base, *(singles[effect].fit for effect in subset.effects), None]
     starts = [replace(model.start(fit, subset.x[: model.size]), x=subset.x) for fit in known]
-    start = replace(starts[0], nuisance=model.best_nuisances(starts))
-    found = minimise(model, model.evaluate(start))
+    begun = of_beginnings(model)
+    start = replace(starts[0], nuisance=begun.best_nuisances(starts))
+    found = grown(model, minimise(begun, begun.evaluate(start)))
     search.finished.append(found)
     return found
 

@@ -20,7 +20,7 @@ from wedgesweep.diagnose.evaluation import Evaluation
 from wedgesweep.diagnose.explanation import POSSIBLE, best_of_each, penalised
 from wedgesweep.diagnose.fit_data import FitData
 from wedgesweep.diagnose.fit_parameters import Hypothesis
-from wedgesweep.diagnose.least_squares import BRIEF, minimise
+from wedgesweep.diagnose.least_squares import BRIEF, grown, minimise, of_beginnings
 from wedgesweep.diagnose.model import ROUGH, TOLERANCE, Fit, Model
 from wedgesweep.diagnose.work import SLIGHT, Best, Change, HasBest, Step
 
@@ -205,13 +205,16 @@ def base_fit(search: Search) -> Explained:
     """
     search.progress("base model")
     model = search.model()
+    begun = of_beginnings(model)
     start = model.start(None, np.zeros(0))
     points = [replace(start, x=x) for x in model.uncertain_starts()]
-    evaluations = search.data.search_nuisances(model, points)
-    fit = _halved(model, evaluations, BASE_SCHEDULE, each=search.each)
+    evaluations = begun.data.search_nuisances(begun, points)
+    fit = grown(model, _halved(begun, evaluations, BASE_SCHEDULE, each=search.each))
     if len(model.uncertain) and fit.p < POSSIBLE:
         fit = search.tried(
-            "nuisances held", fit, lambda fit: min(fit, _from_held(search, model, evaluations), key=_chi2)
+            "nuisances held",
+            fit,
+            lambda fit: min(fit, grown(model, _from_held(search, begun, evaluations)), key=_chi2),
         )
     fit = _aligned(fit)
     return Explained(replace(search, data=fit.model.data), fit, [], {})
@@ -285,19 +288,22 @@ def single_fit(search: Search, effect: str, base: Fit) -> SingleFit:
     """Fit one effect from starting points over its range, beside the fitted base model."""
     data, model, rough = search.data, search.model(effect), search.model(effect, tolerance=ROUGH)
     points = model.hypothesis.starts()
-    scan = data.search_nuisances(rough, [model.start(base, x) for x in points])
-    evaluations = best_per_value(scan)
+    beside_base = [model.start(base, x) for x in points]
+    begun, rough_begun = of_beginnings(model), of_beginnings(rough)
+    tried = begun.data.search_nuisances(rough_begun, beside_base)
+    scan = tried if begun is model else rough.evaluate_all(beside_base)
+    evaluations = best_per_value(tried)
     implausible = data.implausible(base.point) or bool(base.implausible)
     if implausible or _brings_alignment(data, effect) or model.hypothesis.switches:
         # Fitted without the effect, the base model's own parameters are, or may be, far from the truth.
-        fresh = data.search_nuisances(rough, [model.start(None, x) for x in points])
+        fresh = begun.data.search_nuisances(rough_begun, [model.start(None, x) for x in points])
         if model.hypothesis.switches and data.uncertain:
-            fresh = [_with_own_numbers(rough, each) for each in fresh]
+            fresh = [_with_own_numbers(rough_begun, each) for each in fresh]
         evaluations = evaluations + fresh
         if implausible:
-            evaluations = evaluations + beside_stated(model, fresh)
+            evaluations = evaluations + beside_stated(begun, fresh)
     schedule = SHORT_SCHEDULE if base.p >= POSSIBLE else SCHEDULE
-    fit = best_of(model, evaluations, schedule)
+    fit = grown(model, best_of(begun, evaluations, schedule))
     if _brings_alignment(data, effect):
         fit = _aligned(fit)
     return SingleFit(fit, scan, fit.model.data)

@@ -26,6 +26,7 @@ from wedgesweep.diagnose.fit_data import INPUT_GAIN, Arrays, Motion
 from wedgesweep.diagnose.model import TOLERANCE, Fit, Model
 from wedgesweep.diagnose.next_test.sensors import Sensors, median_test
 from wedgesweep.diagnose.sampled_data import Decorrelation, SampledData, best_of_each_test, padded
+from wedgesweep.diagnose.transient.cutting import FEWEST_COMPARED, SHORTEST
 from wedgesweep.diagnose.transient.window import BODIES, RecordWindow, simulated_together
 from wedgesweep.effects import acting
 from wedgesweep.effects.channel_delay import NAME as DELAY
@@ -209,6 +210,17 @@ class TransientData(SampledData):
         known, windows = self.decorrelations, tuple(self.windows[row] for row in rows)
         kept = None if known is None else tuple(known[row] for row in rows)
         return replace(self, windows=windows, resampled=None, decorrelations=kept)
+
+    def beginning(self, share: float) -> Self:
+        """A recorded input keeps motions in step with the record; free ones go their own ways.
+
+        A larger share is returned where this one would be too short to be fitted.
+        """
+        fewest = [max(SHORTEST / own.natural, FEWEST_COMPARED / own.coefficients) for own in self.windows]
+        share = max(share, *fewest)
+        if share >= 1.0 or any(own.driven for own in self.windows):
+            return self
+        return replace(self, windows=tuple(own.beginning(share) for own in self.windows), resampled=None)
 
     def candidates(self, effects: Sequence[str]) -> tuple[str, ...]:
         shown = {order for own in self.windows for order in own.shown_as_measured}

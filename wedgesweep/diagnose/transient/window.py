@@ -5,9 +5,9 @@ have: under noise whose spectrum is smooth they are all but independent.
 """
 
 from collections.abc import Hashable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
-from math import pi, sqrt
+from math import ceil, pi, sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -134,6 +134,16 @@ class RecordWindow:
         larger by the square root of this.
         """
         return self.channels.shape[1] / self.coefficients
+
+    def beginning(self, share: float) -> "RecordWindow":
+        """The first part of the window, a share of it, and as much of the spectrum."""
+        inside = ceil(share * self.grid.inside)
+        return replace(
+            self,
+            channels=self.channels[:, :inside],
+            coefficients=min(ceil(share * self.coefficients), inside),
+            grid=self.grid._replace(inside=inside),
+        )
 
     @property
     def alike(self) -> Hashable:

@@ -1,0 +1,83 @@
+"""Long releases of a mass that rubs: fits find what the closed form was made of, from far off."""
+
+import numpy as np
+import pytest
+
+from tests.diagnose.rigs import HEAD, PLACE, TRANSIENT, oscillator, saved
+from wedgesweep.diagnose.least_squares import of_beginnings
+from wedgesweep.diagnose.search import Search, base_fit, single_fits
+from wedgesweep.diagnose.stages import explain
+from wedgesweep.diagnose.transient.from_measurement import transient_data
+from wedgesweep.measured import read
+
+
+def released(time, mass, spring, damping, friction, start):
+    """Displacement (m) at times (s) after a release at rest, half swing by half swing (Den Hartog, 1931)."""
+    found, begins, rate = np.full(time.size, np.nan), 0.0, damping / (2.0 * mass)
+    omega = np.sqrt(spring / mass - rate**2)
+    while abs(spring * start) > friction and begins <= time[-1]:
+        centre = np.sign(start) * friction / spring
+        here, since = time >= begins, time[time >= begins] - begins
+        swing = np.cos(omega * since) + rate / omega * np.sin(omega * since)
+        found[here] = centre + (start - centre) * np.exp(-rate * since) * swing
+        begins += np.pi / omega
+        start = centre - (start - centre) * np.exp(-rate * np.pi / omega)
+    found[time >= begins] = start
+    return found
+
+
+def data_of(folder, seed, known_damping):
+    """Four releases of a random rig, whose model has its damper or none, and no friction; its numbers."""
+    rng = np.random.default_rng(seed)
+    mass, frequency, size = 10 ** rng.uniform([-0.5, -0.3, -2.3], [1.5, 0.9, -1.0])
+    spring = mass * (2.0 * np.pi * frequency) ** 2
+    damping = 2.0 * rng.uniform(0.01, 0.05) * np.sqrt(spring * mass)
+    friction = spring * size * rng.uniform(0.01, 0.05)
+    tests = {}
+    for i in range(4):
+        start = size * rng.uniform(0.4, 1.0) * rng.choice([-1, 1])
+        time = np.arange(rng.uniform(400, 600)) / (40.0 * frequency)
+        x = released(time, mass, spring, damping, friction, start)
+        tests[f"release{i}"] = (time, 1e3 * (x + 0.004 * size * rng.standard_normal(time.size))), TRANSIENT
+    keys = {"mass_kg": mass, "spring_N_per_mm": 1e-3 * spring, "normal_force_N": 0.0, "contact": "base"}
+    model = oscillator(**keys, damping_N_s_per_m=damping if known_damping else 0.0)
+    head = HEAD + PLACE + "[measurement.uncertain]\nbolster_stiffness = 0.02\n"
+    return transient_data(read(saved(folder, model, head, "t,x", tests))), friction, damping
+
+
+@pytest.mark.few(2)
+@pytest.mark.parametrize("seed", range(8))
+def test_dry_friction_is_found(tmp_path, seed):
+    data, friction, _ = data_of(tmp_path, seed, known_damping=True)
+    (fit,) = single_fits(base_fit(Search.of(data, ["guide_friction"]))).explanations
+    assert fit.chi2 < 1.1 * fit.dof
+    assert fit.values["guide_friction"]["force_N"] == pytest.approx(friction, rel=0.02)
+
+
+@pytest.mark.few(1)
+@pytest.mark.parametrize("seed", range(8))
+def test_dry_friction_and_a_damper_are_found_together(tmp_path, seed):
+    data, friction, damping = data_of(tmp_path, seed, known_damping=False)
+    best = explain(Search.of(data, ["guide_friction", "viscous_damping"])).explanations[0]
+    assert best.chi2 < 1.1 * best.dof
+    assert best.values["guide_friction"]["force_N"] == pytest.approx(friction, rel=0.05)
+    assert best.values["viscous_damping"]["coefficient_N_s_per_m"] == pytest.approx(damping, rel=0.1)
+
+
+def test_a_beginning_is_the_first_part_of_each_test(tmp_path):
+    data, _, _ = data_of(tmp_path, 0, known_damping=False)
+    model = base_fit(Search.of(data, [])).base.model
+    begun, point = of_beginnings(model, 0.3), model.start(None, np.zeros(0))
+    for whole, part in zip(data.windows, begun.data.windows, strict=True):
+        size = part.channels.shape[1]
+        assert size == pytest.approx(0.3 * whole.channels.shape[1], abs=1)
+        np.testing.assert_array_equal(part.channels, whole.channels[:, :size])
+    motions = [each.data.simulated([each.scenario(point)])[0] for each in (model, begun)]
+    for t, (own, beginning) in enumerate(zip(data.windows, begun.data.windows, strict=True)):
+        whole, part = (
+            window.in_time(motion[t, None, : window.coefficients])[0]
+            for window, motion in zip((own, beginning), motions, strict=True)
+        )
+        # A cut spectrum rings at the ends of what it is of.
+        inside = slice(part.size // 10, -(part.size // 10))
+        assert part[inside] == pytest.approx(whole[: part.size][inside], abs=0.02 * np.ptp(whole))
