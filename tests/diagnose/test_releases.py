@@ -45,7 +45,7 @@ def data_of(folder, seed, known_damping):
     return transient_data(read(saved(folder, model, head, "t,x", tests))), friction, damping
 
 
-@pytest.mark.few(2)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("seed", range(8))
 def test_dry_friction_is_found(tmp_path, seed):
     data, friction, _ = data_of(tmp_path, seed, known_damping=True)
