@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from tests.diagnose.rigs import HEAD, PLACE, TRANSIENT, oscillator, saved
-from wedgesweep.diagnose.least_squares import of_beginnings
+from wedgesweep.diagnose.least_squares import minimise, of_beginnings
+from wedgesweep.diagnose.pairs import simpler
 from wedgesweep.diagnose.search import Search, base_fit, single_fits
 from wedgesweep.diagnose.stages import explain
 from wedgesweep.diagnose.transient.from_measurement import transient_data
@@ -12,7 +13,7 @@ from wedgesweep.measured import read
 
 
 def released(time, mass, spring, damping, friction, start):
-    """Displacement (m) at times (s) after a release at rest, half swing by half swing (Den Hartog, 1931)."""
+    """Displacement (m) at times (s) after a release at rest, each half swing in closed form."""
     found, begins, rate = np.full(time.size, np.nan), 0.0, damping / (2.0 * mass)
     omega = np.sqrt(spring / mass - rate**2)
     while abs(spring * start) > friction and begins <= time[-1]:
@@ -62,6 +63,21 @@ def test_dry_friction_and_a_damper_are_found_together(tmp_path, seed):
     assert best.chi2 < 1.1 * best.dof
     assert best.values["guide_friction"]["force_N"] == pytest.approx(friction, rel=0.05)
     assert best.values["viscous_damping"]["coefficient_N_s_per_m"] == pytest.approx(damping, rel=0.1)
+
+
+def test_a_special_case_takes_the_place_of_an_effect_that_does_nothing_beyond_it(tmp_path):
+    data, friction, damping = data_of(tmp_path, 3, known_damping=False)
+    search = Search.of(data, ["guide_friction", "viscous_damping", "directional_damping"])
+    model = search.model("guide_friction", "directional_damping")
+    rubs, damps = {"force_N": friction}, {"coefficient_N_s_per_m": damping}
+    numbers = {"guide_friction": rubs, "directional_damping": {**damps, "asymmetry": 0.05}}
+    start = model.start(None, model.hypothesis.at(numbers))
+    pair = minimise(model, model.evaluate(start))
+    found = {frozenset(each.effects): each for each in simpler(search, pair)}
+    best = found[frozenset(("guide_friction", "viscous_damping"))]
+    assert best.chi2 < 1.1 * best.dof
+    assert best.values["viscous_damping"]["coefficient_N_s_per_m"] == pytest.approx(damping, rel=0.1)
+    assert found[frozenset(("guide_friction",))].chi2 > 10.0 * best.chi2
 
 
 def test_a_beginning_is_the_first_part_of_each_test(tmp_path):

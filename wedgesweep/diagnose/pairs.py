@@ -42,13 +42,15 @@ PAIRS = "pairs with one of the best single effects"
 class SingleScan(NamedTuple):
     """What is known of one effect.
 
-    ``fit``: to all tests; ``subset``: the same fit on the few tests that it fits worst. ``x`` (n, k): its
-    parameters where it was evaluated and changed the responses, or all of them if it never did; ``changes``
-    (n, m): how it changed those of the base model, whitened, all tests in a row.
+    ``fit``: to all tests; ``subset``: the same fit on the few tests that it fits worst; ``begun``: the same
+    on their beginnings. ``x`` (n, k): its parameters where it was evaluated and changed the responses, or all
+    of them if it never did; ``changes`` (n, m): how it changed those of the base model, whitened, all tests
+    in a row.
     """
 
     fit: Fit
     subset: Fit
+    begun: Fit
     x: np.ndarray
     changes: np.ndarray
 
@@ -123,15 +125,23 @@ def _worst_tests(fit: Fit) -> Fit:
     return subset_fit(fit, np.sort(np.argsort(-fit.evaluation.chi2_by_test)[:SUBSET]))
 
 
+def _at_beginnings(fit: Fit) -> Fit:
+    """The same point on the beginnings of a fit's tests."""
+    model = of_beginnings(fit.model)
+    return fit if model is fit.model else unfitted(model, model.evaluate(fit.point))
+
+
 def single_scan(base: Fit, fit: Fit, scan: Sequence[Evaluation]) -> SingleScan:
     """A single fit with all evaluations of its effect that have responses and change them."""
     evaluations = [each for each in (*scan, fit.evaluation) if each.found]
     changes = np.array([(base.evaluation.residual - each.residual).ravel() for each in evaluations])
     x = np.array([each.point.x[: fit.model.size] for each in evaluations])
     seen = np.array([change @ change > SLIGHT for change in changes], dtype=bool)
+    subset = _worst_tests(fit)
+    begun = _at_beginnings(subset)
     if not seen.any():
-        return SingleScan(fit, _worst_tests(fit), x, np.zeros_like(changes))
-    return SingleScan(fit, _worst_tests(fit), x[seen], changes[seen])
+        return SingleScan(fit, subset, begun, x, np.zeros_like(changes))
+    return SingleScan(fit, subset, begun, x[seen], changes[seen])
 
 
 def _starts(first: Fit, second: SingleScan) -> np.ndarray:
@@ -149,19 +159,17 @@ def _starts(first: Fit, second: SingleScan) -> np.ndarray:
 
 def starting_fit(search: Search, combination: Combination) -> Fit:
     """The fit of a combination on a subset of the tests, before its first iteration."""
-    fit, subset, second = combination.first.fit, combination.first.subset, combination.second
+    fit, begun, second = combination.first.fit, combination.first.begun, combination.second
     model = search.model(*combination.effects, tolerance=ROUGH)
-    model = of_beginnings(model.on(subset.model.data), SHARES[0])
-    alone = of_beginnings(subset.model, SHARES[0])
-    alone_chi2 = subset.chi2 if alone is subset.model else alone.evaluate(subset.point).chi2
+    model = model.on(begun.model.data)
     first_x = fit.x[: fit.model.size]
 
     def best(points: np.ndarray) -> Evaluation:
-        evaluations = model.evaluate_all([model.start(subset, np.r_[first_x, x]) for x in points])
+        evaluations = model.evaluate_all([model.start(begun, np.r_[first_x, x]) for x in points])
         return min(evaluations, key=lambda each: each.chi2)
 
     start = best(_starts(fit, second))
-    if start.chi2 > BEHIND * alone_chi2:
+    if start.chi2 > BEHIND * begun.chi2:
         # Responses do not add where a test sticks that had slid; a weak effect leaves them as they are.
         weakest = second.x[np.argmin((second.changes**2).sum(1))]
         neutral = best(second.fit.model.hypothesis.near_neutral(weakest)[None])
