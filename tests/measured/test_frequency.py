@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
+from wedgesweep.measured.cycles import cut
 from wedgesweep.measured.frequency import (
+    _search,
     estimate_frequency,
     estimate_near,
     refined_frequency,
@@ -140,3 +142,9 @@ def test_only_what_repeats_stands_out():
     assert stands_out(t, signal, 20.0)
     for other in (10.0, 14.0, 40.0):
         assert not stands_out(t, signal, other)
+
+
+def test_each_harmonic_aligns_by_its_own_order():
+    time = np.arange(3000) / 100.0
+    x = 0.02 * np.cos(2.0 * np.pi * 2.0 * time) + np.cos(2.0 * np.pi * 6.0 * time + 0.7)
+    assert _search(cut(time, x, 2.01), 0.05) == pytest.approx(-0.01, abs=1e-3)
