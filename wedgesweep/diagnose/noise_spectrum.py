@@ -36,6 +36,7 @@ HIGH = 0.25
 GRID = np.arange(1, 257) * pi / 256
 # What an estimate was taken from, as reported.
 FROM_REPEATS, FROM_SPECTRUM = "repeats", "frequencies without motion"
+FROM_RESIDUAL = "what an explanation leaves"
 
 
 @dataclass(frozen=True)

@@ -23,6 +23,7 @@ from wedgesweep.diagnose.search import (
     refit_base,
     single_fits,
 )
+from wedgesweep.diagnose.second_effect import adequate_alone, with_second_effect
 
 
 class Stage(NamedTuple):
@@ -113,6 +114,7 @@ REFINEMENT = (
 PAIRS = (
     Stage("beyond range", followed_beyond, _inadequate),
     Stage("best pairs", _pairs, _for_pairs),
+    Stage("second effect", with_second_effect, adequate_alone),
     Stage("simpler", _simpler, _pair_leads),
     Stage("base model at last", refit_base),
     Stage("covariance renewed again", _with_renewed_covariance),

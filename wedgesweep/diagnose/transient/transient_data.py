@@ -27,6 +27,7 @@ from wedgesweep.diagnose.model import TOLERANCE, Fit, Model
 from wedgesweep.diagnose.next_test.sensors import Sensors, median_test
 from wedgesweep.diagnose.sampled_data import Decorrelation, SampledData, best_of_each_test, padded
 from wedgesweep.diagnose.transient.cutting import FEWEST_COMPARED, SHORTEST
+from wedgesweep.diagnose.transient.noise import noise_of_channels
 from wedgesweep.diagnose.transient.window import BODIES, RecordWindow, simulated_together
 from wedgesweep.effects import acting
 from wedgesweep.effects.channel_delay import NAME as DELAY
@@ -110,7 +111,7 @@ class TransientData(SampledData):
     def renewed(self, scenario: Scenario) -> Self:
         """The data with the noise of the input as the response of a scenario passes it on."""
         if not any(own.driven for own in self.windows):
-            return self
+            return self._noise_bounded(scenario)
         (values,) = self.known_values([scenario], OF_INPUT)
         starts, gains = self._states(scenario.point), self._gain(scenario)
         found = []
@@ -118,6 +119,24 @@ class TransientData(SampledData):
             work.add(0.0)  # no part of a search, but it takes time
             found.append(own.decorrelation(values, start, gain, TOLERANCE))
         return replace(self, decorrelations=tuple(found))
+
+    def _noise_bounded(self, scenario: Scenario) -> Self:
+        """The data with no more noise than a scenario leaves: that is noise and misfit.
+
+        The skirts of a motion look like red noise in its record; what an explanation leaves has far smaller
+        ones.
+        """
+        simulated = self.simulated([scenario])[0]
+        if not np.isfinite(simulated).all():
+            return self
+        left = self.without_zero(self.recorded - simulated)
+        residuals = [own.residual(each) for own, each in zip(self.windows, left, strict=True)]
+        rates = [1.0 / own.step for own in self.windows]
+        spectra = noise_of_channels(residuals, {order: str(order) for order in range(3)}, rates)
+        windows = [
+            own.with_less_noise({o: spectra[t, o] for o in own.orders}) for t, own in enumerate(self.windows)
+        ]
+        return replace(self, windows=tuple(windows))
 
     @cached_property
     def size(self) -> np.ndarray:

@@ -4,7 +4,7 @@ The cosine coefficients (DCT-II) of the window are compared, up to the highest f
 have: under noise whose spectrum is smooth they are all but independent.
 """
 
-from collections.abc import Hashable, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import ceil, pi, sqrt
@@ -16,7 +16,7 @@ from scipy.fft import dct, idct
 from wedgesweep.config import Config
 from wedgesweep.diagnose.fit_data import Motion
 from wedgesweep.diagnose.fit_parameters import Values
-from wedgesweep.diagnose.noise_spectrum import NoiseSpectrum
+from wedgesweep.diagnose.noise_spectrum import FROM_REPEATS, FROM_RESIDUAL, NoiseSpectrum
 from wedgesweep.diagnose.sampled_data import Decorrelation
 from wedgesweep.diagnose.transient.input_noise import (
     InputNoise,
@@ -211,6 +211,27 @@ class RecordWindow:
         motions = self.motions(rows, np.repeat(start[None], len(rows), axis=0), tolerance)
         above, below = np.split(np.array([self.added(each) for each in inputs]) - motions, 2)
         return decorrelated(self.noise**2, np.nan_to_num(0.5 * (above - below)))
+
+    def residual(self, left: np.ndarray) -> dict[int, np.ndarray]:
+        """Samples (n,) of each channel, by its order, less a simulation.
+
+        ``left``: coefficients (C K,) of what the simulation leaves; above them there is no motion.
+        """
+        left = left[: self.compared.size].reshape(self.compared.shape)
+        samples = self.channels + self.in_time(left - self.compared)
+        return dict(zip(self.orders, samples, strict=True))
+
+    def with_less_noise(self, spectra: Mapping[int, NoiseSpectrum]) -> "RecordWindow":
+        """The window with other spectra of the noise of its channels where they are smaller."""
+
+        def less(order: int, known: NoiseSpectrum) -> NoiseSpectrum:
+            other = spectra[order]
+            if other(self._frequency).sum() >= known(self._frequency).sum() or known.source == FROM_REPEATS:
+                return known
+            return replace(other, highest=known.highest, source=FROM_RESIDUAL)
+
+        found = tuple(less(*each) for each in zip(self.orders, self.spectra, strict=True))
+        return replace(self, spectra=found)
 
     def in_time(self, coefficients: np.ndarray) -> np.ndarray:
         """Signals (..., C, n) of coefficients (..., C, K)."""
