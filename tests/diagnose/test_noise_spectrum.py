@@ -18,6 +18,7 @@ from wedgesweep.diagnose.loop.loop_data import loop_data
 from wedgesweep.diagnose.noise_bins import noise_of_record
 from wedgesweep.diagnose.noise_spectrum import (
     FROM_REPEATS,
+    FROM_RESIDUAL,
     FROM_SPECTRUM,
     MOST_NOISE,
     NoiseBins,
@@ -105,7 +106,7 @@ def test_a_repeat_of_nothing_is_told(tmp_path):
 
 
 def test_the_report_knows_where_any_noise_comes_from():
-    assert set(NOISE) == {FROM_REPEATS, FROM_SPECTRUM, FROM_MOTION}
+    assert set(NOISE) == {FROM_REPEATS, FROM_SPECTRUM, FROM_RESIDUAL, FROM_MOTION}
     told = noise_source([{"noise_from": FROM_REPEATS}] * 2 + [{"name": "of an older version"}])
     assert told == NOISE[FROM_REPEATS]
 

@@ -4,7 +4,10 @@ import numpy as np
 import pytest
 
 from tests.diagnose.rigs import HEAD, PLACE, TRANSIENT, oscillator, saved
+from wedgesweep.diagnose import verdict
+from wedgesweep.diagnose.explanation import ADEQUATE
 from wedgesweep.diagnose.least_squares import minimise, of_beginnings
+from wedgesweep.diagnose.noise_spectrum import FROM_RESIDUAL
 from wedgesweep.diagnose.pairs import simpler
 from wedgesweep.diagnose.search import Search, base_fit, single_fits
 from wedgesweep.diagnose.stages import explain
@@ -34,16 +37,22 @@ def data_of(folder, seed, known_damping):
     spring = mass * (2.0 * np.pi * frequency) ** 2
     damping = 2.0 * rng.uniform(0.01, 0.05) * np.sqrt(spring * mass)
     friction = spring * size * rng.uniform(0.01, 0.05)
-    tests = {}
-    for i in range(4):
+    records = []
+    for _ in range(4):
         start = size * rng.uniform(0.4, 1.0) * rng.choice([-1, 1])
         time = np.arange(rng.uniform(400, 600)) / (40.0 * frequency)
         x = released(time, mass, spring, damping, friction, start)
-        tests[f"release{i}"] = (time, 1e3 * (x + 0.004 * size * rng.standard_normal(time.size))), TRANSIENT
+        records.append((time, x + 0.004 * size * rng.standard_normal(time.size)))
+    return data_from(folder, mass, spring, damping if known_damping else 0.0, records), friction, damping
+
+
+def data_from(folder, mass, spring, damping, records):
+    """Records of time (s) and displacement (m) of a mass on a spring with a damper, as data of a fit."""
+    tests = {f"release{i}": ((time, 1e3 * x), TRANSIENT) for i, (time, x) in enumerate(records)}
     keys = {"mass_kg": mass, "spring_N_per_mm": 1e-3 * spring, "normal_force_N": 0.0, "contact": "base"}
-    model = oscillator(**keys, damping_N_s_per_m=damping if known_damping else 0.0)
+    model = oscillator(**keys, damping_N_s_per_m=damping)
     head = HEAD + PLACE + "[measurement.uncertain]\nbolster_stiffness = 0.02\n"
-    return transient_data(read(saved(folder, model, head, "t,x", tests))), friction, damping
+    return transient_data(read(saved(folder, model, head, "t,x", tests)))
 
 
 @pytest.mark.few(1)
@@ -97,3 +106,46 @@ def test_a_beginning_is_the_first_part_of_each_test(tmp_path):
         # A cut spectrum rings at the ends of what it is of.
         inside = slice(part.size // 10, -(part.size // 10))
         assert part[inside] == pytest.approx(whole[: part.size][inside], abs=0.02 * np.ptp(whole))
+
+
+MASS, SPRING, SIZE = 2.0, 79.0, 0.02  # about 1 Hz
+
+
+def rubbing(folder, seed, damping_ratio, known_damping, samples, noise):
+    """Four releases of a mass that rubs, with white noise over the release; the data and its friction (N)."""
+    rng, friction = np.random.default_rng(seed), 0.05 * SPRING * SIZE
+    damping = 2.0 * damping_ratio * np.sqrt(SPRING * MASS)
+    time, records = np.arange(12 * samples) / samples, []
+    for start in SIZE * np.array([1.0, -0.85, 0.7, -0.55]):
+        x = released(time, MASS, SPRING, damping, friction, start)
+        records.append((time, x + noise * SIZE * rng.standard_normal(time.size)))
+    return data_from(folder, MASS, SPRING, damping if known_damping else 0.0, records), friction
+
+
+@pytest.mark.few(1)
+@pytest.mark.parametrize(("seed", "samples"), [(0, 35), (6, 58), (11, 45)])
+def test_skirts_of_a_motion_are_no_noise_once_it_is_explained(tmp_path, seed, samples):
+    data, _ = rubbing(tmp_path, seed, 0.015, True, samples, 0.0012)
+    fit = single_fits(base_fit(Search.of(data, ["guide_friction"]))).explanations[0]
+    renewed = data.renewed(fit.model.scenario(fit.point))
+
+    def told(windows):
+        """Largest noise about the motion's first harmonics, over that which is there."""
+        low = [each.noise[0][each.noise[0].size // 20 : each.noise[0].size // 3] for each in windows]
+        return np.array([each.max() for each in low]) / (0.0012 * SIZE)
+
+    assert told(data.windows).max() > 2.0
+    assert told(renewed.windows) == pytest.approx(1.1, abs=0.25)
+    assert {each.spectra[0].source for each in renewed.windows} == {FROM_RESIDUAL}
+
+
+@pytest.mark.parametrize("damping_ratio", [0.0, 0.01])
+def test_a_second_effect_is_looked_for_beside_an_adequate_one(tmp_path, damping_ratio):
+    """Friction that is too large makes up for a damper to within the noise; a score test sees it."""
+    data, friction = rubbing(tmp_path, 1, damping_ratio, False, 40, 0.03)
+    known = explain(Search.of(data, ["guide_friction", "viscous_damping", "cubic_stiffness"]))
+    alone = next(each for each in known.explanations if each.effects == ("guide_friction",))
+    best = verdict.ranked(known.explanations)[0]
+    assert alone.p_value > ADEQUATE
+    assert best.values["guide_friction"]["force_N"] == pytest.approx(friction, rel=0.06)
+    assert set(best.effects) == {"guide_friction", *(["viscous_damping"] if damping_ratio else [])}

@@ -35,6 +35,8 @@ NOISE = {
     "frequencies without motion": "The noise is read where the motion has no frequencies, where it is over, "
     "and from what two channels do not share. This assumes noise of one shape for a sensor in all tests, "
     "a smooth function of frequency.",
+    "what an explanation leaves": "The noise is read likewise from what an explanation leaves of the "
+    "records, where less shows there than in the records themselves.",
     "what no smooth function of the motion explains": "The noise is what no smooth function of displacement, "
     "velocity, acceleration and forces of springs with sliders explains, which assumes that what is missing "
     "in the model is such a function; anything else counts as noise.",

@@ -21,7 +21,7 @@ MOST_WINDOWS = 40
 def transient_data(measurement: Measurement) -> TransientData:
     """Windows of all tests, with the noise of their inputs as the base model as stated passes it on."""
     data = recorded_windows(measurement)
-    return data.renewed(Scenario({}, Point(np.zeros(0), *data.start())))
+    return data.with_input_noise(Scenario({}, Point(np.zeros(0), *data.start())))
 
 
 def recorded_windows(measurement: Measurement) -> TransientData:

@@ -109,9 +109,13 @@ class TransientData(SampledData):
                 yield t, slice(first, first + each.std.size), each
 
     def renewed(self, scenario: Scenario) -> Self:
+        """The data with no more noise than a scenario leaves, and that of the input as it passes it on."""
+        return self._with_noise_left_by(scenario).with_input_noise(scenario)
+
+    def with_input_noise(self, scenario: Scenario) -> Self:
         """The data with the noise of the input as the response of a scenario passes it on."""
         if not any(own.driven for own in self.windows):
-            return self._noise_bounded(scenario)
+            return self
         (values,) = self.known_values([scenario], OF_INPUT)
         starts, gains = self._states(scenario.point), self._gain(scenario)
         found = []
@@ -120,21 +124,22 @@ class TransientData(SampledData):
             found.append(own.decorrelation(values, start, gain, TOLERANCE))
         return replace(self, decorrelations=tuple(found))
 
-    def _noise_bounded(self, scenario: Scenario) -> Self:
-        """The data with no more noise than a scenario leaves: that is noise and misfit.
+    def _with_noise_left_by(self, scenario: Scenario) -> Self:
+        """The data with no more noise than a scenario leaves, which is noise and misfit.
 
-        The skirts of a motion look like red noise in its record; what an explanation leaves has far smaller
-        ones.
+        The skirts of a motion look like red noise in its record. Those of what an explanation leaves are far
+        smaller.
         """
         simulated = self.simulated([scenario])[0]
         if not np.isfinite(simulated).all():
             return self
         left = self.without_zero(self.recorded - simulated)
         residuals = [own.residual(each) for own, each in zip(self.windows, left, strict=True)]
-        rates = [1.0 / own.step for own in self.windows]
-        spectra = noise_of_channels(residuals, {order: str(order) for order in range(3)}, rates)
+        motions = {order: str(order) for order in range(len(MOTIONS))}  # what is left of two may differ
+        spectra = noise_of_channels(residuals, motions, [1.0 / own.step for own in self.windows])
         windows = [
-            own.with_less_noise({o: spectra[t, o] for o in own.orders}) for t, own in enumerate(self.windows)
+            own.with_less_noise([spectra[t, order] for order in own.orders])
+            for t, own in enumerate(self.windows)
         ]
         return replace(self, windows=tuple(windows))
 

@@ -4,7 +4,7 @@ The cosine coefficients (DCT-II) of the window are compared, up to the highest f
 have: under noise whose spectrum is smooth they are all but independent.
 """
 
-from collections.abc import Hashable, Mapping, Sequence
+from collections.abc import Hashable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import ceil, pi, sqrt
@@ -221,17 +221,16 @@ class RecordWindow:
         samples = self.channels + self.in_time(left - self.compared)
         return dict(zip(self.orders, samples, strict=True))
 
-    def with_less_noise(self, spectra: Mapping[int, NoiseSpectrum]) -> "RecordWindow":
-        """The window with other spectra of the noise of its channels where they are smaller."""
+    def with_less_noise(self, spectra: Sequence[NoiseSpectrum]) -> "RecordWindow":
+        """The window with other spectra of its channels' noise where they have less at what is compared."""
 
-        def less(order: int, known: NoiseSpectrum) -> NoiseSpectrum:
-            other = spectra[order]
-            if other(self._frequency).sum() >= known(self._frequency).sum() or known.source == FROM_REPEATS:
+        def less(known: NoiseSpectrum, other: NoiseSpectrum) -> NoiseSpectrum:
+            smaller = other(self._frequency).sum() < known(self._frequency).sum()
+            if known.source == FROM_REPEATS or not smaller:
                 return known
             return replace(other, highest=known.highest, source=FROM_RESIDUAL)
 
-        found = tuple(less(*each) for each in zip(self.orders, self.spectra, strict=True))
-        return replace(self, spectra=found)
+        return replace(self, spectra=tuple(map(less, self.spectra, spectra)))
 
     def in_time(self, coefficients: np.ndarray) -> np.ndarray:
         """Signals (..., C, n) of coefficients (..., C, K)."""
