@@ -829,8 +829,33 @@ def test_each_release_in_a_record_is_a_test(tmp_path):
     one.write_text(
         one.read_text().partition("[[measurement.test]]")[0] + '[[measurement.test]]\nfile = "one.csv"\n'
     )
-    with pytest.raises(measured.MeasuredError, match=r"the motion grows again at 2\.\d* s, 6\.\d* s"):
+    with pytest.raises(measured.MeasuredError, match=r"the motion grows again at 3\.\d* s, 6\.\d* s"):
         measured.read(one)
+
+
+@pytest.mark.parametrize("name", ["x (mm)", "v (mm/s)"])
+def test_what_a_hand_does_between_releases_is_no_test(tmp_path, name):
+    """It pulls slowly, holds for a while, and lets go; noise hides nothing of it."""
+    motion, lets_go, rests = [], [], []
+    for start in (10.0, -7.0, 9.0):
+        t = np.arange(6000) / RATE
+        free = start * np.exp(-t) * np.cos(2.0 * np.pi * 3.0 * t)
+        pull = start * np.sin(np.linspace(0.0, 0.5 * np.pi, 1500)) ** 2
+        before = np.r_[np.zeros(1000), pull, np.full(900, start)]
+        lets_go.append((sum(map(len, motion)) + before.size) / RATE)
+        rests.append(lets_go[-1] + t[-1] + 1.0)
+        motion += [before, free]
+    x = np.concatenate(motion)
+    signal = x if name.startswith("x") else np.gradient(x, 1.0 / RATE)
+    signal = signal + 0.01 * signal.max() * np.random.default_rng(0).normal(size=x.size) + 3.0 * (signal is x)
+    found = begun(
+        tmp_path, text(tmp_path / "one.csv", np.arange(x.size) / RATE, signal, header=f"t (s),{name}")
+    )
+    begins = [test.time[0] for test in found.tests]
+    assert begins == pytest.approx(lets_go, abs=0.15)
+    for test, rest in zip(found.tests, rests, strict=True):
+        assert test.duration > 2.0
+        assert test.time[-1] < rest + 0.3
 
 
 def test_two_speeds_without_names_are_base_and_mass_and_an_accelerometer_on_a_shaft_is_left_out(tmp_path):

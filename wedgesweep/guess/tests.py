@@ -21,10 +21,10 @@ from wedgesweep.guess.columns import (
     slope,
     with_units,
 )
-from wedgesweep.guess.kind import WHOLE, Part, down, from_release, kind_of, parts_of, steady_part
+from wedgesweep.guess.kind import WHOLE, Part, down, from_release, kind_of, parts_of, steady_part, swings_back
 from wedgesweep.measured.clock import continued
 from wedgesweep.measured.declarations import LOOP, MOTIONS, STEADY, TRANSIENT
-from wedgesweep.measured.kinds import released_again
+from wedgesweep.measured.kinds import LARGE, released_again
 from wedgesweep.readers.survey import Column, Survey
 from wedgesweep.units import UNITS, is_dated
 
@@ -168,13 +168,24 @@ def imposed(test: Guessed) -> Guessed:
 def _releases(
     test: Guessed, part: Part, time: np.ndarray, signals: dict[str, np.ndarray]
 ) -> list[tuple[Part, np.ndarray, dict[str, np.ndarray]]]:
-    """Parts of a free motion, each of which begins anew, with their times and signals."""
-    again = released_again(next(iter(signals.values())))
+    """Parts of a free motion, each of which begins anew, with their times and signals.
+
+    What a hand moves before it lets go is none, if others swing.
+    """
+    signal = next(iter(signals.values()))
+    again = released_again(signal)
+    if not again:  # what comes before the release may hide it
+        first = int(np.searchsorted(time, from_release(signal, time) or time[0]))
+        again = [first + each for each in released_again(signal[first:])]
     if not again:
         return [(part, time, signals)]
     starts = [down(float(time[each]), float(time[1] - time[0])) for each in again]
     parts = [Part(*ends) for ends in pairwise([part.start, *starts, part.end])]
-    return [(each, *_evenly(test, each)) for each in parts]
+    found = [(each, *_evenly(test, each)) for each in parts]
+    signals = [next(iter(each[2].values())) for each in found]
+    least = LARGE * max(map(np.ptp, signals))
+    free = [swings_back(each) and np.ptp(each) > least for each in signals]
+    return [each for each, swings in zip(found, free, strict=True) if swings] or found
 
 
 def _begun(part: Part, time: np.ndarray, signals: Mapping[str, np.ndarray], kind: str) -> Part:

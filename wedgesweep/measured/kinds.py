@@ -18,8 +18,10 @@ DECAYS_SLOWLY, PARTS = 1.02, 8
 # Swing of a period over that of two periods before, and over the largest one, from which a free motion was
 # let go or struck again.
 GROWS, LARGE = 2.0, 0.3
-# What has fewer periods in a record is drift.
-SLOWEST = 3
+# Parts of a period over which samples are averaged before the swing is taken: noise swings as well.
+AVERAGED = 8
+# What has fewer periods in a record is drift. Distance from a frequency, over it, that counts as about it.
+SLOWEST, ABOUT = 3, 0.1
 # Highest cut-off over the sampling rate: the motion of a loop is filtered at twice that.
 HIGHEST = 0.2
 # Fewest samples over which a filter settles.
@@ -119,19 +121,45 @@ def transient_faults(test: TestRecord, file: str, at: str) -> list[str]:
 
 
 def released_again(signal: np.ndarray) -> list[int]:
-    """Samples at which a free motion (n,), after it has decayed, begins anew."""
-    period = signal.size // periods(signal)
-    swing = np.ptp(signal[: signal.size - signal.size % period].reshape(-1, period), axis=1)
+    """Samples at which a free motion (n,), after it has decayed, is struck, or pulled to be let go, again."""
+    every = max(signal.size // periods(signal) // AVERAGED, 1)
+    rows = signal.size // (AVERAGED * every)
+    means = signal[: rows * AVERAGED * every].reshape(rows, AVERAGED, every).mean(axis=2)
+    swing = np.ptp(means, axis=1)
     before, after = swing[:-2], swing[2:]
     grown = (after > GROWS * before) & (after > LARGE * swing.max())
     grown &= np.maximum.accumulate(before) > GROWS * before
-    return [period * (each + 1) for each in np.flatnonzero(grown & ~np.r_[False, grown[:-1]]).tolist()]
+    found, begun = [], 0
+    for each in (np.flatnonzero(grown & ~np.r_[False, grown[:-1]]) + 1).tolist():
+        # Before it is let go a mass is pulled one way, and perhaps held.
+        if not goes_one_way(means[begun:each].ravel()):
+            begun += _begins_anew(swing[begun : each + 1])
+            found.append(AVERAGED * every * begun)
+    return found
+
+
+def _begins_anew(swing: np.ndarray) -> int:
+    """The first of the periods (n,) that is not quiet any more after a motion that has decayed."""
+    largest = int(swing.argmax())
+    quiet = largest + int((swing[largest:] <= GROWS * swing[largest:].min()).argmax())
+    loud = swing[quiet:] > GROWS**2 * swing[largest:].min()
+    return quiet + int(loud.argmax()) if loud.any() else swing.size - 1
 
 
 def periods(signal: np.ndarray) -> int:
-    """Periods in samples (n,) of the frequency that has most of their power."""
-    power = np.abs(np.fft.rfft(signal - signal.mean()))
-    return SLOWEST + int(power[SLOWEST:].argmax())
+    """Periods in samples (n,) of the frequency about which their power is largest.
+
+    That of a motion which decays is spread about its frequency. A drift, or a mass that is held between
+    releases, has more at a few low frequencies, but falls with their square, noise not at all.
+    """
+    power = np.abs(np.fft.rfft(signal - signal.mean())) ** 2
+    number = np.arange(SLOWEST, power.size)
+    low, high = (np.rint(each * number).astype(int) for each in (1.0 - ABOUT, 1.0 + ABOUT))
+    total = np.r_[0.0, np.cumsum(power)]
+    high = np.minimum(high + 1, power.size)
+    mean = (total[high] - total[low]) / (high - low)
+    band = int((mean * number**1.5).argmax())
+    return int(low[band] + power[low[band] : high[band]].argmax())
 
 
 def _decays_slowly(signal: np.ndarray) -> bool:
