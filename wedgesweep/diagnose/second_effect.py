@@ -5,22 +5,23 @@ for another with a wrong value of its own. A score test asks for each other effe
 its way; those that gain more than they cost are fitted as well.
 """
 
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 
-from wedgesweep.diagnose.evaluation import Evaluation
+from wedgesweep.diagnose.evaluation import Evaluation, Point
 from wedgesweep.diagnose.explanation import ADEQUATE, parameter_penalty, penalised
-from wedgesweep.diagnose.least_squares import minimise
+from wedgesweep.diagnose.least_squares import grown, minimise, of_beginnings
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.parameter_constancy import Projector
+from wedgesweep.diagnose.score_test import RETAINED
 from wedgesweep.diagnose.search import LEADING, Explained, Search
 from wedgesweep.effects import go_together
 
-# Share of its value at the start of a fit at which an effect is weak enough for responses to add.
-WEAK = 0.01
-# Share of a change that must survive the projection.
-RETAINED = 0.05
+# Share of its range at which an effect is weak enough for responses to add: where a mass comes to rest they
+# add up to a thousandth only, and below a tenth of this rounding shows.
+WEAK = 3e-4
 # Name by which a spent budget tells what it left out.
 SECOND = "a second effect beside an adequate one"
 
@@ -29,7 +30,7 @@ class Beside(NamedTuple):
     """A second effect: ``t2`` by which it would reduce chi-squared, and where its fit starts."""
 
     t2: float
-    start: Evaluation
+    point: Point
     effects: tuple[str, ...]
 
 
@@ -47,32 +48,38 @@ def with_second_effect(known: Explained) -> Explained:
     scored = search.each(lambda other: _beside(search, best, project, other), others)
     cost = parameter_penalty(search.data)
     useful = sorted((each for each in scored if each.t2 > cost), key=lambda each: -each.t2)
-    fits = search.each_affordable(
-        lambda each: minimise(search.model(*each.effects), each.start), useful[:LEADING], SECOND
-    )
-    return known.joined(fits)
+    return known.joined(search.each_affordable(partial(_fitted, search), useful[:LEADING], SECOND))
+
+
+def _fitted(search: Search, beside: Beside) -> Fit:
+    model = search.model(*beside.effects)
+    begun = of_beginnings(model)
+    return grown(model, minimise(begun, begun.evaluate(beside.point)))
 
 
 def _beside(search: Search, best: Fit, project: Projector, other: str) -> Beside:
-    """The score of another effect, over the points at which its fit may start."""
-    effects = (*best.effects, other)
-    model, hypothesis = search.model(*effects), search.model(other).hypothesis
-    first = best.x[: best.model.size]
-    points = []
-    for x in hypothesis.starts():
-        parameter = hypothesis.parameters[0]
-        if parameter.fades:
-            x = np.r_[parameter.neutral + WEAK * (x[0] - parameter.neutral), x[1:]]
-        points.append(model.start(best, np.r_[first, x]))
-    found = [_scored(project, best, each, effects) for each in model.evaluate_all(points)]
-    return max(found, key=lambda each: each.t2)
+    """The score of another effect, by the point at which it gains most.
+
+    A fit starts from where the effect does nothing, if there is such a point: there it is as good as without.
+    """
+    effects, hypothesis = (*best.effects, other), search.model(other).hypothesis
+    model, first, points = search.model(*effects), hypothesis.parameters[0], hypothesis.starts()
+    if first.fades:
+        farthest = first.high if first.high > first.neutral else first.low
+        points[:, 0] = first.neutral + WEAK * (farthest - first.neutral)
+    points, known = np.unique(points, axis=0), best.x[: best.model.size]
+    found = model.evaluate_all([model.start(best, np.r_[known, x]) for x in points])
+    t2 = [_t2(project, best, each) for each in found]
+    leading = int(np.argmax(t2))
+    start = hypothesis.near_neutral(points[leading])
+    return Beside(t2[leading], model.start(best, np.r_[known, start]), effects)
 
 
-def _scored(project: Projector, best: Fit, there: Evaluation, effects: tuple[str, ...]) -> Beside:
+def _t2(project: Projector, best: Fit, there: Evaluation) -> float:
+    """Reduction of chi-squared along the change from the best fit to an evaluation, if responses add."""
     if not there.found:
-        return Beside(0.0, there, effects)
+        return 0.0
     change = best.model.data.response_change(best.evaluation, there)
     left, size = project(change), float(np.linalg.norm(change))
     length = float(np.linalg.norm(left))
-    t2 = float(left @ project.misfit) ** 2 / length**2 if length > RETAINED * size else 0.0
-    return Beside(t2, there, effects)
+    return float(left @ project.misfit) ** 2 / length**2 if length > RETAINED * size else 0.0
