@@ -182,9 +182,9 @@ def _releases(
     starts = [down(float(time[each]), float(time[1] - time[0])) for each in again]
     parts = [Part(*ends) for ends in pairwise([part.start, *starts, part.end])]
     found = [(each, *_evenly(test, each)) for each in parts]
-    signals = [next(iter(each[2].values())) for each in found]
-    least = LARGE * max(map(np.ptp, signals))
-    free = [swings_back(each) and np.ptp(each) > least for each in signals]
+    motions = [next(iter(own.values())) for _, _, own in found]
+    least = LARGE * max(float(np.ptp(each)) for each in motions)
+    free = [swings_back(each) and float(np.ptp(each)) > least for each in motions]
     return [each for each, swings in zip(found, free, strict=True) if swings] or found
 
 
