@@ -34,6 +34,7 @@ class Reason(StrEnum):
     PAIR_LEAVES_LESS = "a pair leaves less"
     UNCONFIRMED = "not confirmed on held-out tests"
     UNCHECKED = "ended before all rivals and held-out tests were tried"
+    UNSEARCHED = "ended before all effects were tried"
     AT_LIMIT = "an uncertain number far from what is stated"
     MORE_ACCURATE = "by far the most accurate explanation, though above the noise"
     FEW_TESTS = "too few tests"

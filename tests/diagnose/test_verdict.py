@@ -494,6 +494,7 @@ def test_two_effects_that_are_far_more_accurate_than_all_others_are_the_cause(
         ("none-of-mine", True, False, "none-of-mine"),
         ("none-of-mine", False, False, "data-insufficient"),
         ("tied", False, False, "tied"),
+        ("nothing-missing", False, False, "nothing-missing"),
     ],
 )
 def test_a_verdict_claims_no_more_than_was_done(found, searched, confirmed, expected):
@@ -502,11 +503,19 @@ def test_a_verdict_claims_no_more_than_was_done(found, searched, confirmed, expe
         "none-of-mine": [explained(1500.0, "stribeck")],
         "tied": [explained(705.0, "stribeck"), explained(709.0, "preload")],
     }
-    before = verdict_of(explained(5000.0), *others[found])
+    base = explained(5000.0 if found in others else 700.0)
+    before = verdict_of(base, *others.get(found, ()))
     assert before.verdict == found
-    after = verdict.as_far_as_done(before, searched, confirmed)
+    after = verdict.as_far_as_done(before, True, searched, confirmed)
     assert (after.verdict, after.best) == (expected, before.best)
     assert (after.reason is Reason.UNCHECKED) == (expected != found)
+
+
+def test_nothing_is_missing_only_once_all_effects_were_tried():
+    before = verdict_of(explained(700.0))
+    after = verdict.as_far_as_done(before, False, False, False)
+    assert (before.verdict, after.verdict) == ("nothing-missing", "data-insufficient")
+    assert after.reason is Reason.UNSEARCHED
 
 
 @pytest.mark.parametrize(("elastic", "kept"), [(0.04, False), (0.01, True)])

@@ -35,9 +35,12 @@ class Beside(NamedTuple):
 
 
 def adequate_alone(known: Explained) -> bool:
-    """Whether a single effect leads, is adequate, and explains more than the base model."""
+    """Whether a single effect leads, is adequate, and explains more than the base model.
+
+    Not under an allowed model error: what such an error leaves may point the way of any effect.
+    """
     best = min([known.base, *known.explanations], key=penalised)
-    return len(best.effects) == 1 and best.p_value >= ADEQUATE
+    return len(best.effects) == 1 and best.p_value >= ADEQUATE and not best.model.data.model_error
 
 
 def with_second_effect(known: Explained) -> Explained:

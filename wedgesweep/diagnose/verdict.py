@@ -355,15 +355,18 @@ def on_held_out_tests(
     return replace(doubted, verdict=CONSISTENT if finding.verdict == NAMED else INSUFFICIENT)
 
 
-def as_far_as_done(finding: Finding, searched: bool, confirmed: bool) -> Finding:
+def as_far_as_done(finding: Finding, tried: bool, searched: bool, confirmed: bool) -> Finding:
     """The finding of a diagnosis that may have ended early.
 
-    ``searched``: whether all rivals were tried; ``confirmed``: whether held-out tests were predicted.
+    ``tried``: whether all single effects were; ``searched``: whether all rivals were; ``confirmed``: whether
+    held-out tests were predicted.
     """
     if finding.verdict == NAMED and not (searched and confirmed):
         return replace(finding, verdict=CONSISTENT, reason=Reason.UNCHECKED, numbers={})
     if finding.verdict == NONE and not searched:
         return replace(finding, verdict=INSUFFICIENT, reason=Reason.UNCHECKED, numbers={})
+    if finding.verdict == NOTHING and not tried:  # the noise is that of the records by themselves
+        return replace(finding, verdict=INSUFFICIENT, reason=Reason.UNSEARCHED, numbers={})
     return finding
 
 

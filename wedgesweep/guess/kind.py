@@ -21,7 +21,6 @@ BEGINNING, PUSH, LEFT, TAIL = 0.6, 0.9, 0.7, 0.1
 # Distance of a period from the median one, over the median of these distances, beyond which it belongs to the
 # run-up or the run-down: a trend doubles it, and noise of one number in thousands of periods makes it 5.
 RUN_UP = 5.0
-
 # Least swing of a free motion to the other side over its largest one.
 BACK = 0.1
 
@@ -106,10 +105,10 @@ def from_release(signal: np.ndarray, time: np.ndarray) -> float | None:
     largest, high = int(swing.argmax()), swing >= PUSH * swing.max()
     first = int(high.argmax())
     low = first + int((swing[first:] < LEFT * swing.max()).argmax())
-    left = low - int(high[first:low][::-1].argmax())  # noise does not let it go
-    to_rest = int((place[left:] * place[first] <= 0.0).argmax())
-    if left - first > to_rest > 0:  # a swing is as long at its top as from there to the rest position
-        return down(float(time[left - 1]), float(time[1] - time[0]))
+    last = first + int(np.flatnonzero(high[first : low + 1])[-1])  # noise does not let it go before
+    to_rest = int((place[last:] * place[first] <= 0.0).argmax())
+    if last - first > to_rest > 0:  # a swing is as long at its top as from there to the rest position
+        return down(float(time[last]), float(time[1] - time[0]))
     pushed = largest > 2 and not high[0] and largest < BEGINNING * signal.size
     return down(float(time[largest]), float(time[1] - time[0])) if pushed else None
 
@@ -118,7 +117,7 @@ def swings_back(signal: np.ndarray) -> bool:
     """Whether a free motion (n,) swings to the other side of where it rests: a pull by hand does not."""
     place = signal - np.median(signal[-max(int(TAIL * signal.size), 1) :])
     place = place[np.abs(place).argmax() :]
-    return bool(-(place / place[0]).min() > BACK)
+    return bool((-np.sign(place[0]) * place).max() > BACK * abs(place[0]))
 
 
 def steady_part(signal: np.ndarray, time: np.ndarray) -> Part:

@@ -3,7 +3,7 @@
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import pairwise
+from itertools import compress, pairwise
 from pathlib import Path
 
 import numpy as np
@@ -25,6 +25,7 @@ from wedgesweep.guess.kind import WHOLE, Part, down, from_release, kind_of, part
 from wedgesweep.measured.clock import continued
 from wedgesweep.measured.declarations import LOOP, MOTIONS, STEADY, TRANSIENT
 from wedgesweep.measured.kinds import LARGE, released_again
+from wedgesweep.measured.signals import spikes
 from wedgesweep.readers.survey import Column, Survey
 from wedgesweep.units import UNITS, is_dated
 
@@ -185,7 +186,7 @@ def _releases(
     motions = [next(iter(own.values())) for _, _, own in found]
     least = LARGE * max(float(np.ptp(each)) for each in motions)
     free = [swings_back(each) and float(np.ptp(each)) > least for each in motions]
-    return [each for each, swings in zip(found, free, strict=True) if swings] or found
+    return list(compress(found, free)) or found
 
 
 def _begun(part: Part, time: np.ndarray, signals: Mapping[str, np.ndarray], kind: str) -> Part:
@@ -234,6 +235,6 @@ def _evenly(test: Guessed, part: Part) -> tuple[np.ndarray, dict[str, np.ndarray
         column = channels[name].column
         x = stamps if not column.rate else column.start + np.arange(stamps.size) / column.rate
         x, y = x[good][order], values[good][order]
-        known = np.abs(y) < HUGE
+        known = (np.abs(y) < HUGE) & ~spikes(y)
         signals[name] = np.interp(time, x[known], y[known])
     return time, {**dict.fromkeys(channels, np.zeros(time.size)), **signals}

@@ -26,6 +26,9 @@ FAR = 10.0
 # A sensor that hangs repeats a number STUCK times or more, and then jumps by JUMP times its median step.
 # Where more than this share of the samples hang, or of other steps are none, it is coarse or rests.
 STUCK, JUMP, RARE = 10, 10.0, 0.05
+# A spike is farther from both neighbours than this many times the range of all others but the share SELDOM,
+# in a record of FEWEST samples or more: no motion that is sampled four times a period comes back as fast.
+TWICE, SELDOM, FEWEST = 2.0, 1e-3, 64
 CLOCK = "write the column time in [measurement.columns], or rate_hz in [measurement]"
 
 
@@ -117,9 +120,8 @@ def _signals_of(
         stamps = _stamps(columns["time"], read["time"], remarks) if timed else None
         for name, channel in channels.items():
             rate = channel.get("rate_hz") or (None if timed else measurement.get("rate_hz"))
-            signals[name] = _without_stuck(
-                name, _signal(name, channel, columns[name], (stamps, rate), table), remarks
-            )
+            signal = _signal(name, channel, columns[name], (stamps, rate), table)
+            signals[name] = _without_spikes(name, _without_stuck(name, signal, remarks), remarks)
     except ValueError as error:
         found.append(str(error))
     faults.extend(f"{file}: {fault}" for fault in found)
@@ -161,6 +163,30 @@ def _without_stuck(name: str, signal: Signal, remarks: list[str]) -> Signal:
     count, first = int(np.count_nonzero(stuck)), float(signal.time[int(stuck.argmax())])
     remarks.append(f"{name} hangs for {count} samples, the first after {first:.6g} s: they count as missing")
     return replace(signal, samples=np.where(stuck, np.nan, signal.samples))
+
+
+def _without_spikes(name: str, signal: Signal, remarks: list[str]) -> Signal:
+    """A signal without samples that no motion makes: they are missing. A force may be as short as a hit."""
+    far = spikes(signal.samples) if name in ("displacement", "velocity") else np.zeros(0, bool)
+    if not far.any():
+        return signal
+    when = ", ".join(f"{each:.6g} s" for each in signal.time[far][:LISTED])
+    more = " and more" if np.count_nonzero(far) > LISTED else ""
+    remarks.append(f"{name} has a spike at {when}{more} that no motion makes: it counts as missing")
+    return replace(signal, samples=np.where(far, np.nan, signal.samples))
+
+
+def spikes(samples: np.ndarray) -> np.ndarray:
+    """Which of samples (n,) are farther from both neighbours than twice the range of nearly all others."""
+    known, found = np.flatnonzero(np.isfinite(samples)), np.zeros(samples.size, bool)
+    if known.size < FEWEST:
+        return found
+    steps = np.abs(np.diff(samples[known]))
+    apart = np.minimum(np.r_[np.inf, steps], np.r_[steps, np.inf])
+    rest = known.size - max(int(SELDOM * known.size), 1)
+    others = samples[known[np.argpartition(apart, rest)[:rest]]]
+    found[known[apart > TWICE * np.ptp(others)]] = True
+    return found
 
 
 def stuck_samples(samples: np.ndarray) -> np.ndarray:

@@ -37,6 +37,8 @@ def lead(result: DiagnosisResult) -> str:
             )
         case "data-insufficient" if result.reason is Reason.NO_SIGNAL:
             return f"{phrases.these_tests(result).capitalize()} show hardly any response."
+        case "data-insufficient" if result.reason is Reason.UNSEARCHED:
+            return "Nothing may be missing, but the diagnosis ended before all effects were tried."
         case "data-insufficient" if result.reason is Reason.UNCHECKED:
             return "The model misses something, and the diagnosis ended before all causes were tried."
         case "data-insufficient":
