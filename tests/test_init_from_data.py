@@ -17,6 +17,7 @@ from wedgesweep.diagnose.loop.loop_data import loop_data
 from wedgesweep.diagnose.transient.from_measurement import transient_data
 from wedgesweep.guess import first_files
 from wedgesweep.measured import consistency, quality
+from wedgesweep.measured.signals import spikes
 
 REAL = Path(__file__).parents[2] / "shared" / "real"
 RATE = 1000.0
@@ -856,6 +857,23 @@ def test_what_a_hand_does_between_releases_is_no_test(tmp_path, name):
     for test, rest in zip(found.tests, rests, strict=True):
         assert test.duration > 2.0
         assert test.time[-1] < rest + 0.3
+
+
+def test_a_spike_is_a_missing_sample_and_begins_no_test(tmp_path):
+    t, x = decay()
+    x[1500] = 400.0
+    found = begun(tmp_path, text(tmp_path / "one.csv", t, x, header="t (s),x (mm)")).tests[0]
+    assert found.time[0] < 0.3
+    assert np.abs(found.displacement).max() < 0.011
+    assert "displacement has a spike at 1.5 s that no motion makes: it counts as missing" in found.remarks
+
+
+@pytest.mark.parametrize("samples", [4, 5, 40])
+def test_no_motion_that_is_sampled_four_times_a_period_has_a_spike(samples):
+    t = np.arange(40 * samples) / samples
+    for damping in (0.0, 0.05, 0.4):
+        assert not spikes(np.exp(-2.0 * np.pi * damping * t) * np.cos(2.0 * np.pi * t + 0.1)).any()
+    assert not spikes(np.sign(np.sin(0.1 * t + 0.01))).any()
 
 
 def test_two_speeds_without_names_are_base_and_mass_and_an_accelerometer_on_a_shaft_is_left_out(tmp_path):

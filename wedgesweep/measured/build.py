@@ -24,7 +24,7 @@ from wedgesweep.measured.kinds import goes_one_way, loop_faults, periods, transi
 from wedgesweep.measured.measurement import TestRecord
 from wedgesweep.measured.plausibility import channel_faults
 from wedgesweep.measured.quality import trend_faults
-from wedgesweep.measured.signals import Signal, Signals, selected
+from wedgesweep.measured.signals import Signal, Signals, selected, without_spikes
 from wedgesweep.measured.stationarity import stationarity_faults
 from wedgesweep.measured.steadiness import MOST_SAMPLES, frequency_faults
 from wedgesweep.periodogram import without_trend
@@ -61,6 +61,8 @@ def build_record(
     problems.extend(f"{file}: {fault}" for fault in dict.fromkeys(_size_faults(signals)))
     if len(problems) > before:
         return None
+    if given["kind"] != STEADY:  # there a spike is warned of: it hardly moves harmonics
+        signals = {name: without_spikes(name, each, remarks) for name, each in signals.items()}
     try:
         even = evened(signals)
     except ClockError as error:

@@ -120,8 +120,9 @@ def _signals_of(
         stamps = _stamps(columns["time"], read["time"], remarks) if timed else None
         for name, channel in channels.items():
             rate = channel.get("rate_hz") or (None if timed else measurement.get("rate_hz"))
-            signal = _signal(name, channel, columns[name], (stamps, rate), table)
-            signals[name] = _without_spikes(name, _without_stuck(name, signal, remarks), remarks)
+            signals[name] = _without_stuck(
+                name, _signal(name, channel, columns[name], (stamps, rate), table), remarks
+            )
     except ValueError as error:
         found.append(str(error))
     faults.extend(f"{file}: {fault}" for fault in found)
@@ -165,7 +166,7 @@ def _without_stuck(name: str, signal: Signal, remarks: list[str]) -> Signal:
     return replace(signal, samples=np.where(stuck, np.nan, signal.samples))
 
 
-def _without_spikes(name: str, signal: Signal, remarks: list[str]) -> Signal:
+def without_spikes(name: str, signal: Signal, remarks: list[str]) -> Signal:
     """A signal without samples that no motion makes: they are missing. A force may be as short as a hit."""
     far = spikes(signal.samples) if name in ("displacement", "velocity") else np.zeros(0, bool)
     if not far.any():
@@ -182,7 +183,7 @@ def spikes(samples: np.ndarray) -> np.ndarray:
     if known.size < FEWEST:
         return found
     steps = np.abs(np.diff(samples[known]))
-    apart = np.minimum(np.r_[np.inf, steps], np.r_[steps, np.inf])
+    apart = np.r_[0.0, np.minimum(steps[:-1], steps[1:]), 0.0]
     rest = known.size - max(int(SELDOM * known.size), 1)
     others = samples[known[np.argpartition(apart, rest)[:rest]]]
     found[known[apart > TWICE * np.ptp(others)]] = True

@@ -208,8 +208,8 @@ def _insufficient(result: DiagnosisResult) -> str:
             return f"{_wrong(result)}, and not everything was tried that may explain it{_so_far(result)}."
         case Reason.UNSEARCHED:
             return (
-                f"The error of the simulation is {_error(result, 'base')}, which noise alone may leave, but the "
-                "diagnosis ended before all effects were tried, and one may explain it better."
+                f"The error of the simulation is {_error(result, 'base')}, which noise alone may leave, but "
+                "the diagnosis ended before all effects were tried, and one may explain it better."
             )
     return f"{_wrong(result)}, but {tests} cannot show what{_adequate(result)}{_next_test(result)}."
 
