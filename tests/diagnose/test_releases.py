@@ -2,13 +2,16 @@
 
 import numpy as np
 import pytest
+from scipy.special import stdtrit
 
 from tests.diagnose.rigs import HEAD, PLACE, TRANSIENT, oscillator, saved
 from wedgesweep.diagnose import verdict
+from wedgesweep.diagnose.cross_validation import Predictor, widened
 from wedgesweep.diagnose.explanation import ADEQUATE
 from wedgesweep.diagnose.least_squares import minimise, of_beginnings
 from wedgesweep.diagnose.noise_spectrum import FROM_RESIDUAL
 from wedgesweep.diagnose.pairs import simpler
+from wedgesweep.diagnose.result import estimates
 from wedgesweep.diagnose.search import Search, base_fit, single_fits
 from wedgesweep.diagnose.stages import explain
 from wedgesweep.diagnose.transient.from_measurement import transient_data
@@ -149,3 +152,23 @@ def test_a_second_effect_is_looked_for_beside_an_adequate_one(tmp_path, damping_
     assert alone.p_value > ADEQUATE
     assert best.values["guide_friction"]["force_N"] == pytest.approx(friction, rel=0.06)
     assert set(best.effects) == {"guide_friction", *(["viscous_damping"] if damping_ratio else [])}
+
+
+def test_intervals_are_as_wide_as_numbers_differ_between_tests(tmp_path):
+    """The friction is another one in each release; that of all is known to about half of their scatter."""
+    frictions, time = 0.05 * SPRING * SIZE * np.array([0.8, 0.95, 1.1, 1.15]), np.arange(400) / 40.0
+    noise = np.random.default_rng(0).standard_normal((4, 400))
+    records = [
+        (time, released(time, MASS, SPRING, 0.1, each, SIZE) + 1e-3 * SIZE * own)
+        for each, own in zip(frictions, noise, strict=True)
+    ]
+    data = data_from(tmp_path, MASS, SPRING, 0.1, records)
+    fit = single_fits(base_fit(Search.of(data, ["guide_friction"]))).explanations[0]
+    wide, known = (
+        estimates.parameters(each)["guide_friction"]["force_N"]["ci95"]
+        for each in (widened(fit, Predictor(lambda function, items: list(map(function, items)))), fit)
+    )
+    error = stdtrit(3, 0.975) * frictions.std(ddof=1) / 2.0
+    assert 0.3 * error < 0.5 * np.ptp(wide) < 1.5 * error
+    assert np.ptp(known) < 0.1 * np.ptp(wide)
+    assert wide[0] < frictions.mean() < wide[1]

@@ -14,6 +14,7 @@ from wedgesweep.diagnose.fit_data import FitData
 from wedgesweep.diagnose.least_squares import BRIEF, minimise, subset_fit
 from wedgesweep.diagnose.model import Fit, Model
 from wedgesweep.diagnose.normal_equations import normal_equations
+from wedgesweep.diagnose.smoothing import TWO_SIDED
 
 # Gauss-Newton steps of what is fitted to a single test, and the largest one of a nuisance parameter.
 GAUSS_NEWTON, LOCAL_STEP = 4, 0.3
@@ -32,7 +33,7 @@ class Prediction(NamedTuple):
     """Tests that were left out together, simulated by a model that was fitted to the others.
 
     ``scheme``: what they have in common ("frequency", "record"); ``tests``: their indices in all data;
-    ``data``: these tests alone; ``effects``: those that the other tests support.
+    ``data``: these tests alone; ``effects``: those that the other tests support; ``x``: numbers of the fit.
     """
 
     scheme: str
@@ -40,6 +41,7 @@ class Prediction(NamedTuple):
     data: FitData
     evaluation: Evaluation
     effects: tuple[str, ...]
+    x: np.ndarray
 
     @property
     def misfit(self) -> np.ndarray:
@@ -143,6 +145,23 @@ def cross_validate(base: Fit, extended: Fit, predict: Predictor) -> Gain:
     return Gain(schemes, tests, observations[tests], np.column_stack([*left, noise[tests]]))
 
 
+def widened(fit: Fit, predict: Predictor) -> Fit:
+    """A fit whose intervals are as wide as its numbers scatter between fits without some tests (jackknife).
+
+    What a model lacks is no independent error of each number. Where tests differ, so do the numbers by which
+    the model makes up for it (Efron and Tibshirani, 1993, An Introduction to the Bootstrap, ch. 11).
+    """
+    variance = own = np.diag(fit.covariance)
+    predicted = [each for each in predict(fit) if each.effects == fit.effects]
+    for scheme in {each.scheme for each in predicted}:
+        x = np.array([each.x for each in predicted if each.scheme == scheme])
+        if len(x) > 1:
+            of_few = float(stdtrit(len(x) - 1, 0.975)) / TWO_SIDED
+            variance = np.maximum(variance, own + of_few**2 * (len(x) - 1) * x.var(axis=0))
+    factor = np.sqrt(variance / np.where(own > 0.0, own, 1.0))
+    return replace(fit, covariance=fit.covariance * np.outer(factor, factor))
+
+
 def held_out_accuracy(fit: Fit, predict: Predictor) -> float | None:
     """Accuracy of the predictions of tests that were left out of a fit; None if there are none."""
     predicted = predict(fit)
@@ -193,7 +212,7 @@ def _predicted(fit: Fit, scheme: str, rows: np.ndarray) -> Prediction:
     part = subset_fit(fit, rows)
     part = replace(part, model=replace(part.model, hypothesis=trained.model.hypothesis))
     evaluation = with_own_nuisances(part.model, replace(part.point, x=trained.x))
-    return Prediction(scheme, rows, part.model.data, evaluation, trained.effects)
+    return Prediction(scheme, rows, part.model.data, evaluation, trained.effects, trained.x)
 
 
 def supported(trained: Fit) -> Fit:

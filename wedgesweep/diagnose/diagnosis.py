@@ -10,7 +10,7 @@ from wedgesweep.config import Config
 from wedgesweep.diagnose import score_test, verdict, work
 from wedgesweep.diagnose.calibration import calibrate
 from wedgesweep.diagnose.concatenation import joined
-from wedgesweep.diagnose.cross_validation import Gain, Predictor, cross_validate
+from wedgesweep.diagnose.cross_validation import Gain, Predictor, cross_validate, widened
 from wedgesweep.diagnose.empirical.stage import EmpiricalForce, empirical_force
 from wedgesweep.diagnose.explanation import best_of_each, penalised
 from wedgesweep.diagnose.fit_data import FitData
@@ -306,7 +306,7 @@ def _with_leading_explanation(search: Search, found: Diagnosis, predict: Predict
     again = strict.compared_again(fit.evaluation)
     best = replace(fit, model=fit.model.on(strict), evaluation=again)
     others = [each for each in found.explanations if each.effects != best.effects]
-    gain = cross_validate(found.base, best, predict)
+    gain, best = cross_validate(found.base, best, predict), widened(best, predict)
     decided = replace(found.decided, best=best)
     known = tuple(best_of_each([best, *others], penalised))
     return replace(found, decided=decided, explanations=known, gain=gain)

@@ -171,6 +171,6 @@ def _held_out(found: SmoothFit, groups: Sequence[tuple[str, np.ndarray]], each: 
         scheme, rows = group
         model = found.model.on(found.model.data.subset(rows))
         point = replace(found.evaluation.point.subset(rows), x=found.without(rows))
-        return Prediction(scheme, rows, model.data, with_own_nuisances(model, point), model.effects)
+        return Prediction(scheme, rows, model.data, with_own_nuisances(model, point), model.effects, point.x)
 
     return accuracy_of(each(predicted, list(groups)), found.as_fit)
