@@ -67,7 +67,7 @@ def test_dry_friction_is_found(tmp_path, seed):
     assert fit.values["guide_friction"]["force_N"] == pytest.approx(friction, rel=0.02)
 
 
-@pytest.mark.few(1)
+@pytest.mark.acceptance
 @pytest.mark.parametrize("seed", range(8))
 def test_dry_friction_and_a_damper_are_found_together(tmp_path, seed):
     data, friction, damping = data_of(tmp_path, seed, known_damping=False)
@@ -142,7 +142,8 @@ def test_skirts_of_a_motion_are_no_noise_once_it_is_explained(tmp_path, seed, sa
     assert {each.spectra[0].source for each in renewed.windows} == {FROM_RESIDUAL}
 
 
-@pytest.mark.parametrize("damping_ratio", [0.0, 0.01])
+@pytest.mark.few(1)
+@pytest.mark.parametrize("damping_ratio", [0.01, 0.0])
 def test_a_second_effect_is_looked_for_beside_an_adequate_one(tmp_path, damping_ratio):
     """Friction that is too large makes up for a damper to within the noise; a score test sees it."""
     data, friction = rubbing(tmp_path, 1, damping_ratio, False, 40, 0.03)
