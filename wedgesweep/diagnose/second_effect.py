@@ -47,7 +47,9 @@ def with_second_effect(known: Explained) -> Explained:
     """The explanations with the leading effect beside each other one that what it leaves points to."""
     search, best = known.search, min(known.explanations, key=penalised)
     project = Projector(best)
-    others = [each for each in search.effects if go_together((*best.effects, each))]
+    others = [
+        name for name in search.effects if name not in best.effects and go_together((*best.effects, name))
+    ]
     scored = search.each(lambda other: _beside(search, best, project, other), others)
     cost = parameter_penalty(search.data)
     useful = sorted((each for each in scored if each.t2 > cost), key=lambda each: -each.t2)
