@@ -1,5 +1,7 @@
 """Long releases of a mass that rubs: fits find what the closed form was made of, from far off."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.special import stdtrit
@@ -173,3 +175,22 @@ def test_intervals_are_as_wide_as_numbers_differ_between_tests(tmp_path):
     assert 0.3 * error < 0.5 * np.ptp(wide) < 1.5 * error
     assert np.ptp(known) < 0.1 * np.ptp(wide)
     assert wide[0] < frictions.mean() < wide[1]
+
+
+@pytest.mark.acceptance
+def test_a_pair_is_fitted_from_either_of_its_effects(tmp_path):
+    """Friction by itself takes the place of the damper, and leads to another number of swings."""
+    mass, spring, size, friction = 11.063, 4476.9, 0.04187, 11.229
+    rng, critical, records = np.random.default_rng(2), 2.0 * np.sqrt(spring * mass), []
+    for start, count in ((0.76, 1006), (0.994, 1133), (-0.523, 793), (0.558, 796)):
+        time = np.arange(count) / (76.0 * np.sqrt(spring / mass) / (2.0 * np.pi))
+        x = released(time, mass, spring, 0.0445 * critical, friction, start * size)
+        records.append((time, x + 0.0074 * size * rng.standard_normal(count)))
+    data = data_from(tmp_path, mass, 1.0305 * spring, 0.02 * critical, records)
+    search = Search.of(data, ["guide_friction", "viscous_damping"])
+    without, best = (
+        explain(replace(search, without=frozenset(left_out))).explanations[0]
+        for left_out in (["either first"], [])
+    )
+    assert best.chi2 < 1.1 * best.dof < without.chi2
+    assert best.values["guide_friction"]["force_N"] == pytest.approx(friction, rel=0.01)

@@ -22,8 +22,8 @@ from wedgesweep.effects import go_together
 # Share of its range at which an effect is weak enough for responses to add: where a mass comes to rest they
 # add up to a thousandth only, and below a tenth of this rounding shows.
 WEAK = 3e-4
-# Name by which a spent budget tells what it left out.
-SECOND = "a second effect beside an adequate one"
+# Names by which a spent budget tells what it left out.
+SECOND, EITHER = "a second effect beside an adequate one", "the best pair from either of its effects"
 
 
 class Beside(NamedTuple):
@@ -54,6 +54,26 @@ def with_second_effect(known: Explained) -> Explained:
     cost = parameter_penalty(search.data)
     useful = sorted((each for each in scored if each.t2 > cost), key=lambda each: -each.t2)
     return known.joined(search.each_affordable(partial(_fitted, search), useful[:LEADING], SECOND))
+
+
+def with_either_first(known: Explained) -> Explained:
+    """The best pair fitted again from either of its effects by itself, as if the other did nothing.
+
+    A mass with friction comes to rest after some number of swings, and each number has a minimum of its own.
+    Where friction leads and takes the place of a damper, only the damper by itself leads to the right one.
+    """
+    search, found = known.search, known.explanations
+    pair = min(found, key=penalised).effects
+    alone = [each for each in found if len(each.effects) == 1 and each.effects[0] in pair]
+
+    def followed(first: Fit) -> Fit:
+        (other,) = set(pair) - set(first.effects)
+        hypothesis = search.model(other).hypothesis
+        model = search.model(*first.effects, other)
+        x = np.r_[first.x[: first.model.size], hypothesis.near_neutral(hypothesis.starts()[0])]
+        return _fitted(search, Beside(0.0, model.start(first, x), model.effects))
+
+    return known.joined(search.each_affordable(followed, alone, EITHER))
 
 
 def _fitted(search: Search, beside: Beside) -> Fit:

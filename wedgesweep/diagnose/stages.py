@@ -23,7 +23,7 @@ from wedgesweep.diagnose.search import (
     refit_base,
     single_fits,
 )
-from wedgesweep.diagnose.second_effect import adequate_alone, with_second_effect
+from wedgesweep.diagnose.second_effect import adequate_alone, with_either_first, with_second_effect
 
 
 class Stage(NamedTuple):
@@ -115,6 +115,7 @@ PAIRS = (
     Stage("beyond range", followed_beyond, _inadequate),
     Stage("best pairs", _pairs, _for_pairs),
     Stage("second effect", with_second_effect, adequate_alone),
+    Stage("either first", with_either_first, lambda known: _pair_leads(known) and _inadequate(known)),
     Stage("simpler", _simpler, _pair_leads),
     Stage("base model at last", refit_base),
     Stage("covariance renewed again", _with_renewed_covariance),
