@@ -86,6 +86,12 @@ def grown(model: Model, fit: Fit) -> Fit:
     return minimise(model, model.evaluate(fit.point))
 
 
+def fit_from(model: Model, point: Point) -> Fit:
+    """Fit from a point far off, to the beginnings of the tests first."""
+    begun = of_beginnings(model)
+    return grown(model, minimise(begun, begun.evaluate(point)))
+
+
 def lm_step(model: Model, point: Point, equations: NormalEquations, damping: float) -> Step:
     """The damped Gauss-Newton step from a point, within the bounds of parameters and the limits of steps."""
     x = point.x

@@ -16,7 +16,7 @@ from wedgesweep.diagnose import verdict
 from wedgesweep.diagnose.evaluation import Evaluation
 from wedgesweep.diagnose.explanation import best_of_each, penalised
 from wedgesweep.diagnose.fit_parameters import Values
-from wedgesweep.diagnose.least_squares import BEGINNINGS, grown, minimise, of_beginnings, subset_fit
+from wedgesweep.diagnose.least_squares import BEGINNINGS, fit_from, minimise, of_beginnings, subset_fit
 from wedgesweep.diagnose.model import ROUGH, Fit, unfitted
 from wedgesweep.diagnose.search import LEADING, Round, Scans, Search
 from wedgesweep.diagnose.work import SLIGHT
@@ -186,9 +186,7 @@ def _complete(search: Search, base: Fit, singles: Mapping[str, SingleScan], subs
     model = search.model(*subset.effects)
     known = [base, *(singles[effect].fit for effect in subset.effects), None]
     starts = [replace(model.start(fit, subset.x[: model.size]), x=subset.x) for fit in known]
-    begun = of_beginnings(model)
-    start = replace(starts[0], nuisance=begun.best_nuisances(starts))
-    found = grown(model, minimise(begun, begun.evaluate(start)))
+    found = fit_from(model, replace(starts[0], nuisance=of_beginnings(model).best_nuisances(starts)))
     search.finished.append(found)
     return found
 

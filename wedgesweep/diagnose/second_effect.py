@@ -6,14 +6,15 @@ its way; those that gain more than they cost are fitted as well.
 """
 
 from functools import partial
+from math import nan
 from typing import NamedTuple
 
 import numpy as np
 
 from wedgesweep.diagnose.evaluation import Evaluation, Point
 from wedgesweep.diagnose.explanation import ADEQUATE, parameter_penalty, penalised
-from wedgesweep.diagnose.least_squares import grown, minimise, of_beginnings
-from wedgesweep.diagnose.model import Fit
+from wedgesweep.diagnose.least_squares import fit_from
+from wedgesweep.diagnose.model import Fit, Model
 from wedgesweep.diagnose.parameter_constancy import Projector
 from wedgesweep.diagnose.score_test import RETAINED
 from wedgesweep.diagnose.search import LEADING, Explained, Search
@@ -23,15 +24,26 @@ from wedgesweep.effects import go_together
 # add up to a thousandth only, and below a tenth of this rounding shows.
 WEAK = 3e-4
 # Names by which a spent budget tells what it left out.
-SECOND, EITHER = "a second effect beside an adequate one", "the best pair from either of its effects"
+SECOND_EFFECT, EITHER_FIRST = (
+    "a second effect beside an adequate one",
+    "the best pair from either of its effects",
+)
 
 
-class Beside(NamedTuple):
-    """A second effect: ``t2`` by which it would reduce chi-squared, and where its fit starts."""
+class Candidate(NamedTuple):
+    """An effect beside the fit of another one, with its own numbers ``x`` (k,) from which it is made weak.
 
-    t2: float
-    point: Point
-    effects: tuple[str, ...]
+    ``t2``: by which it would reduce chi-squared; NaN if that was not asked.
+    """
+
+    first: Fit
+    other: str
+    x: np.ndarray
+    t2: float = nan
+
+    @property
+    def effects(self) -> tuple[str, ...]:
+        return (*self.first.effects, self.other)
 
 
 def adequate_alone(known: Explained) -> bool:
@@ -50,10 +62,10 @@ def with_second_effect(known: Explained) -> Explained:
     others = [
         name for name in search.effects if name not in best.effects and go_together((*best.effects, name))
     ]
-    scored = search.each(lambda other: _beside(search, best, project, other), others)
+    scored = search.each(lambda other: _scored(search, best, project, other), others)
     cost = parameter_penalty(search.data)
     useful = sorted((each for each in scored if each.t2 > cost), key=lambda each: -each.t2)
-    return known.joined(search.each_affordable(partial(_fitted, search), useful[:LEADING], SECOND))
+    return known.joined(search.each_affordable(partial(_fitted, search), useful[:LEADING], SECOND_EFFECT))
 
 
 def with_either_first(known: Explained) -> Explained:
@@ -65,39 +77,37 @@ def with_either_first(known: Explained) -> Explained:
     search, found = known.search, known.explanations
     pair = min(found, key=penalised).effects
     alone = [each for each in found if len(each.effects) == 1 and each.effects[0] in pair]
-
-    def followed(first: Fit) -> Fit:
-        (other,) = set(pair) - set(first.effects)
-        hypothesis = search.model(other).hypothesis
-        model = search.model(*first.effects, other)
-        x = np.r_[first.x[: first.model.size], hypothesis.near_neutral(hypothesis.starts()[0])]
-        return _fitted(search, Beside(0.0, model.start(first, x), model.effects))
-
-    return known.joined(search.each_affordable(followed, alone, EITHER))
+    others = [next(name for name in pair if name not in first.effects) for first in alone]
+    both = [
+        Candidate(first, other, search.model(other).hypothesis.starts()[0])
+        for first, other in zip(alone, others, strict=True)
+    ]
+    return known.joined(search.each_affordable(partial(_fitted, search), both, EITHER_FIRST))
 
 
-def _fitted(search: Search, beside: Beside) -> Fit:
-    model = search.model(*beside.effects)
-    begun = of_beginnings(model)
-    return grown(model, minimise(begun, begun.evaluate(beside.point)))
+def _fitted(search: Search, each: Candidate) -> Fit:
+    """A fit that starts where the candidate does nothing, if it can: there it is as good as without."""
+    model, alone = search.model(*each.effects), search.model(each.other).hypothesis
+    return fit_from(model, _beside(model, each.first, alone.near_neutral(each.x)))
 
 
-def _beside(search: Search, best: Fit, project: Projector, other: str) -> Beside:
-    """The score of another effect, by the point at which it gains most.
+def _beside(model: Model, first: Fit, x: np.ndarray) -> Point:
+    """The point of a model with the numbers x (k,) of its second effect beside a fit of the first one."""
+    return model.start(first, np.r_[first.x[: first.model.size], x])
 
-    A fit starts from where the effect does nothing, if there is such a point: there it is as good as without.
-    """
-    effects, hypothesis = (*best.effects, other), search.model(other).hypothesis
-    model, first, points = search.model(*effects), hypothesis.parameters[0], hypothesis.starts()
-    if first.fades:
-        farthest = first.high if first.high > first.neutral else first.low
-        points[:, 0] = first.neutral + WEAK * (farthest - first.neutral)
-    points, known = np.unique(points, axis=0), best.x[: best.model.size]
-    found = model.evaluate_all([model.start(best, np.r_[known, x]) for x in points])
-    t2 = [_t2(project, best, each) for each in found]
+
+def _scored(search: Search, best: Fit, project: Projector, other: str) -> Candidate:
+    """Another effect beside the best one, with the numbers by which it gains most."""
+    model, alone = search.model(*best.effects, other), search.model(other).hypothesis
+    parameter, points = alone.parameters[0], alone.starts()
+    if parameter.fades:
+        farthest = parameter.high if parameter.high > parameter.neutral else parameter.low
+        points[:, 0] = parameter.neutral + WEAK * (farthest - parameter.neutral)
+    points = np.unique(points, axis=0)
+    evaluations = model.evaluate_all([_beside(model, best, x) for x in points])
+    t2 = [_t2(project, best, each) for each in evaluations]
     leading = int(np.argmax(t2))
-    start = hypothesis.near_neutral(points[leading])
-    return Beside(t2[leading], model.start(best, np.r_[known, start]), effects)
+    return Candidate(best, other, points[leading], t2[leading])
 
 
 def _t2(project: Projector, best: Fit, there: Evaluation) -> float:

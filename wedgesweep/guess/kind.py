@@ -17,12 +17,12 @@ NOISE, MOST = 0.5, 20_000
 PAUSE, FEWEST, SHARE = 20.0, 200, 0.1
 # Part of a free motion in which it must be at its largest. Shares of the largest swing above which the swing
 # before that counts as a push, and below which the mass was let go. Part at the end that shows its rest.
-BEGINNING, PUSH, LEFT, TAIL = 0.6, 0.9, 0.7, 0.1
+BEGINNING, PUSH, LET_GO, TAIL = 0.6, 0.9, 0.7, 0.1
 # Distance of a period from the median one, over the median of these distances, beyond which it belongs to the
 # run-up or the run-down: a trend doubles it, and noise of one number in thousands of periods makes it 5.
 RUN_UP = 5.0
 # Least swing of a free motion to the other side over its largest one.
-BACK = 0.1
+SWINGS_BACK = 0.1
 
 
 @dataclass(frozen=True)
@@ -104,7 +104,7 @@ def from_release(signal: np.ndarray, time: np.ndarray) -> float | None:
     swing = np.abs(place)
     largest, high = int(swing.argmax()), swing >= PUSH * swing.max()
     first = int(high.argmax())
-    low = first + int((swing[first:] < LEFT * swing.max()).argmax())
+    low = first + int((swing[first:] < LET_GO * swing.max()).argmax())
     last = first + int(np.flatnonzero(high[first : low + 1])[-1])  # noise does not let it go before
     to_rest = int((place[last:] * place[first] <= 0.0).argmax())
     if last - first > to_rest > 0:  # a swing is as long at its top as from there to the rest position
@@ -117,7 +117,7 @@ def swings_back(signal: np.ndarray) -> bool:
     """Whether a free motion (n,) swings to the other side of where it rests: a pull by hand does not."""
     place = signal - np.median(signal[-max(int(TAIL * signal.size), 1) :])
     place = place[np.abs(place).argmax() :]
-    return bool((-np.sign(place[0]) * place).max() > BACK * abs(place[0]))
+    return bool((-np.sign(place[0]) * place).max() > SWINGS_BACK * abs(place[0]))
 
 
 def steady_part(signal: np.ndarray, time: np.ndarray) -> Part:

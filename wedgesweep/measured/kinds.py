@@ -19,9 +19,9 @@ DECAYS_SLOWLY, PARTS = 1.02, 8
 # let go or struck again.
 GROWS, LARGE = 2.0, 0.3
 # Parts of a period over which samples are averaged before the swing is taken: noise swings as well.
-AVERAGED = 8
-# What has fewer periods in a record is drift. Distance from a frequency, over it, that counts as about it.
-SLOWEST, ABOUT = 3, 0.1
+PARTS_OF_PERIOD = 8
+# What has fewer periods in a record is drift. Half the width of a band over its frequency.
+SLOWEST, HALF_BAND = 3, 0.1
 # Highest cut-off over the sampling rate: the motion of a loop is filtered at twice that.
 HIGHEST = 0.2
 # Fewest samples over which a filter settles.
@@ -122,9 +122,9 @@ def transient_faults(test: TestRecord, file: str, at: str) -> list[str]:
 
 def released_again(signal: np.ndarray) -> list[int]:
     """Samples at which a free motion (n,), after it has decayed, is struck, or pulled to be let go, again."""
-    every = max(signal.size // periods(signal) // AVERAGED, 1)
-    rows = signal.size // (AVERAGED * every)
-    means = signal[: rows * AVERAGED * every].reshape(rows, AVERAGED, every).mean(axis=2)
+    every = max(signal.size // periods(signal) // PARTS_OF_PERIOD, 1)
+    rows = signal.size // (PARTS_OF_PERIOD * every)
+    means = signal[: rows * PARTS_OF_PERIOD * every].reshape(rows, PARTS_OF_PERIOD, every).mean(axis=2)
     swing = np.ptp(means, axis=1)
     before, after = swing[:-2], swing[2:]
     grown = (after > GROWS * before) & (after > LARGE * swing.max())
@@ -134,7 +134,7 @@ def released_again(signal: np.ndarray) -> list[int]:
         # Before it is let go a mass is pulled one way, and perhaps held.
         if not goes_one_way(means[begun:each].ravel()):
             begun += _begins_anew(swing[begun : each + 1])
-            found.append(AVERAGED * every * begun)
+            found.append(PARTS_OF_PERIOD * every * begun)
     return found
 
 
@@ -154,7 +154,7 @@ def periods(signal: np.ndarray) -> int:
     """
     power = np.abs(np.fft.rfft(signal - signal.mean())) ** 2
     number = np.arange(SLOWEST, power.size)
-    low, high = (np.rint(each * number).astype(int) for each in (1.0 - ABOUT, 1.0 + ABOUT))
+    low, high = (np.rint(each * number).astype(int) for each in (1.0 - HALF_BAND, 1.0 + HALF_BAND))
     total = np.r_[0.0, np.cumsum(power)]
     high = np.minimum(high + 1, power.size)
     mean = (total[high] - total[low]) / (high - low)

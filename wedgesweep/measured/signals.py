@@ -28,7 +28,7 @@ FAR = 10.0
 STUCK, JUMP, RARE = 10, 10.0, 0.05
 # A spike is farther from both neighbours than this many times the range of all others but the share SELDOM,
 # in a record of FEWEST samples or more: no motion that is sampled four times a period comes back as fast.
-TWICE, SELDOM, FEWEST = 2.0, 1e-3, 64
+SPIKE, SELDOM, FEWEST = 2.0, 1e-3, 64
 CLOCK = "write the column time in [measurement.columns], or rate_hz in [measurement]"
 
 
@@ -186,7 +186,7 @@ def spikes(samples: np.ndarray) -> np.ndarray:
     apart = np.r_[0.0, np.minimum(steps[:-1], steps[1:]), 0.0]
     rest = known.size - max(int(SELDOM * known.size), 1)
     others = samples[known[np.argpartition(apart, rest)[:rest]]]
-    found[known[apart > TWICE * np.ptp(others)]] = True
+    found[known[apart > SPIKE * np.ptp(others)]] = True
     return found
 
 
